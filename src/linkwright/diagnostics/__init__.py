@@ -1,4 +1,4 @@
-"""Findings about a user's input: what is wrong, where, why, and how to fix it; and how they are printed."""
+"""Findings about a user's input: what is wrong, where, why, and how to fix it."""
 
 from linkwright.diagnostics.diagnostic import (
     Diagnostic,

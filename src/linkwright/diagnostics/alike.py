@@ -1,4 +1,4 @@
-"""Combine findings that are alike in many places."""
+"""Grouping of similar findings that occur in many places."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ _PLACES = 2
 
 
 def group_similar(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return the diagnostics for people: of similar ones only the first, with a count of the others.
+    """Reduce each large group of similar diagnostics to the first, plus a count of the others.
 
-    Alike are those of one code and severity whose messages differ in nothing but names and numbers.
+    Diagnostics are similar if they have the same code and severity, and their messages differ only in names and
+    numbers.
     """
     groups: dict[object, list[Diagnostic]] = {}
     for diagnostic in diagnostics:

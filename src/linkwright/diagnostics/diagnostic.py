@@ -1,9 +1,7 @@
-"""Diagnostics: findings about a user's input, their places in source texts, and the exception that carries them.
+"""Diagnostics, their places in source texts, and the exception that carries them.
 
-Source texts and places in them.
-
-Positions inside the program are character offsets, which cost nothing to carry. Lines and columns are computed only for
-a `Span`.
+A diagnostic is a finding about a user's input. Positions inside the program are character offsets, which are cheap to
+pass on. Lines and columns are computed only for a `Span`.
 """
 
 from __future__ import annotations
@@ -28,12 +26,12 @@ FETCH = phrase("run `git lfs pull` in its repository")
 
 
 def is_pointer(data: bytes) -> bool:
-    """Return whether the bytes of a file, or the first of them, are such a pointer."""
+    """Return whether the content of a file, or its beginning, is a pointer of Git LFS."""
     return data.startswith(_BEGINS)
 
 
 def is_pointer_file(path: Path) -> bool:
-    """Return whether a file is one; False where it cannot be read."""
+    """Return whether a file is a pointer of Git LFS; False if it cannot be read."""
     try:
         with path.open("rb") as file:
             return is_pointer(file.read(len(_BEGINS)))
@@ -46,12 +44,18 @@ TEXT_NAME = "<robot_description>"
 
 
 def is_text(path_or_text: object) -> bool:
-    """Return whether a description is given as a text, which is known by its ``<``, and not as a path."""
+    """Return whether a description is given as a text, not as a path.
+
+    A text is recognised by its ``<``.
+    """
     return isinstance(path_or_text, str) and "<" in path_or_text
 
 
 class Span(NamedTuple):
-    """A place in a file: lines and columns count from 1, columns count characters, the end is exclusive."""
+    """A range in a file.
+
+    Lines and columns count from 1, columns count characters, and the end is exclusive.
+    """
 
     file: str
     line: int
@@ -64,11 +68,11 @@ class Span(NamedTuple):
 
 
 class SourceText:
-    """A text with a name, which turns character offsets into lines and columns.
+    """A named text that converts character offsets to lines and columns.
 
     Args:
-        name: what a reader knows the text by: a path, or a name in angle brackets such as ``<stdin>``.
-        text: the whole text, with line ends as they are in the file.
+        name: the name by which a reader knows the text: a path, or a name in angle brackets such as ``<stdin>``.
+        text: the entire text, with the line ends of the file.
     """
 
     __slots__ = ("_starts", "name", "text")
@@ -82,26 +86,32 @@ class SourceText:
         return f"SourceText({self.name!r}, {len(self.text)} characters)"
 
     def position(self, offset: int) -> tuple[int, int]:
-        """Line and column, both from 1, of a character offset (clamped into the text)."""
+        """Return the line and column, both from 1, of a character offset.
+
+        The offset is clamped to the text.
+        """
         starts = self._line_starts()
         offset = max(0, min(offset, len(self.text)))
         line = bisect_right(starts, offset)
         return line, offset - starts[line - 1] + 1
 
     def offset(self, line: int, column: int) -> int:
-        """Character offset of a line and column, both from 1 (clamped into the text)."""
+        """Return the character offset of a line and column, both from 1.
+
+        The result is clamped to the text.
+        """
         starts = self._line_starts()
         start = starts[max(0, min(line - 1, len(starts) - 1))]
         return min(start + column - 1, len(self.text))
 
     def span(self, start: int, end: int | None = None) -> Span:
-        """The span from one character offset to another; without an end, one character."""
+        """Return the span between two character offsets; without an end, the span of one character."""
         line, column = self.position(start)
         end_line, end_column = self.position(start + 1 if end is None else end)
         return Span(self.name, line, column, end_line, end_column)
 
     def line(self, number: int) -> str:
-        """The text of one line, counted from 1, without its line end; empty when there is no such line."""
+        """Return a line, counted from 1, without its line end; empty if there is no such line."""
         starts = self._line_starts()
         if not 1 <= number <= len(starts):
             return ""
@@ -129,29 +139,29 @@ class Severity(Enum):
 
 
 class Note(NamedTuple):
-    """Another fact about a diagnostic, with its place, such as a macro call that led there."""
+    """Another fact about a diagnostic with its place, such as the macro call that led to it."""
 
     message: Phrase
     span: Span | None = None
 
 
 class Diagnostic:
-    """One finding: a stable code, what is wrong, where, why, and how to fix it; immutable.
+    """A finding, with a stable code, what is wrong, where, why, and how to fix it; immutable.
 
-    Two with the same content are equal.
+    Two diagnostics with the same content are equal.
 
     Attributes:
         code: letters for the room and three digits, such as ``XAC101``; never reused for another meaning.
-        message: one sentence without a full stop at its end, with names as the user wrote them.
+        message: one sentence without a full stop, with names as the user wrote them.
         span: the place, or None if there is none (a missing file).
-        notes: what led to it: includes, macro calls, values.
-        hint: how to fix it, or None.
-        source: the text that the span is in, for an excerpt; None if it was not stored.
+        notes: what led to the finding: includes, macro calls, values.
+        hint: how to fix the problem, or None.
+        source: the text that contains the span, for an excerpt; None if it was not stored.
     """
 
     __slots__ = ("code", "hint", "message", "notes", "severity", "source", "span")
 
-    def __init__(  # by hand: to import dataclasses takes as long as to expand a small file
+    def __init__(  # written by hand, because importing dataclasses takes as long as expanding a small file
         self,
         code: str,
         message: Phrase,
@@ -179,10 +189,10 @@ class Diagnostic:
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self._fields().items())})"
 
     def but(self, **changes: Any) -> Self:
-        """The same diagnostic with other values for some attributes.
+        """Return a copy of the diagnostic with other values for some attributes.
 
         Raises:
-            TypeError: for a name that is none of its attributes.
+            TypeError: a name is not an attribute.
         """
         return type(self)(**{**self._all(), **changes})
 
@@ -194,12 +204,15 @@ class Diagnostic:
 
     @property
     def placed_message(self) -> Phrase:
-        """The message, after its place if it has one."""
+        """The message, preceded by its place if it has one."""
         return joined((str(self.span), self.message), ": ") if self.span else self.message
 
 
 class LinkwrightError(Exception):
-    """An error in the user's input, never a bug of Linkwright; it has at least one diagnostic."""
+    """Raised for an error in the user's input, never for a bug of Linkwright.
+
+    It has at least one diagnostic.
+    """
 
     def __init__(self, *diagnostics: Diagnostic) -> None:
         if not diagnostics:
@@ -215,10 +228,10 @@ class LinkwrightError(Exception):
 
 
 def in_one_line(diagnostics: Iterable[Diagnostic]) -> Phrase:
-    """Join the messages of several diagnostics."""
+    """Join the messages of several diagnostics into one line."""
     return joined((diagnostic.message for diagnostic in diagnostics), "; ")
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
-    """Return whether any of them is an error."""
+    """Return whether any of the diagnostics is an error."""
     return any(diagnostic.severity is Severity.ERROR for diagnostic in diagnostics)

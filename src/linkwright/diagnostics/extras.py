@@ -1,4 +1,7 @@
-"""The extras of the distribution: optional libraries that commands name if they are not installed."""
+"""The extras of the distribution, which are optional libraries.
+
+Commands name an extra if it is not installed.
+"""
 
 from __future__ import annotations
 
@@ -35,15 +38,15 @@ _BY_MODULE = {**{module: extra for extra, module in EXTRAS.items()}, "cv2": "vis
 
 
 _VERSION = sys.version_info[:2]
-_BEFORE = r"python_version < '(\d+)\.(\d+)'"  # not compiled here: few commands need it
+_BEFORE = r"python_version < '(\d+)\.(\d+)'"  # compiled only on use, because few commands need it
 
 
 def install_hint(extra: str, package: str = "") -> Phrase:
-    """How to install an extra of `EXTRAS`.
+    """Return a hint on how to install an extra of `EXTRAS`.
 
     Args:
-        extra: the extra.
-        package: what is missing of it, by its module; that of the table when left out.
+        extra: the name of the extra.
+        package: the missing module of the extra; by default its module in the table.
     """
     package = package or EXTRAS[extra]
     newest = _newest_python(package)
@@ -69,23 +72,29 @@ def install_hint(extra: str, package: str = "") -> Phrase:
 
 
 def package_hint(distribution: str) -> Phrase:
-    """How to install a package that belongs to no extra, where Linkwright's Python finds it."""
+    """Return a hint on how to install a package that belongs to no extra.
+
+    The command installs it where Linkwright's Python finds it.
+    """
     return phrase("run {command}", command=_installation().command_for_packages(distribution))
 
 
 def _installation() -> Installation:
-    from linkwright.diagnostics.installation import find_installation  # takes 15 ms, and is needed for errors alone
+    from linkwright.diagnostics.installation import find_installation  # takes 15 ms, needed only for errors
 
     return find_installation()
 
 
 def _newest_python(package: str) -> tuple[int, ...]:
-    """Return the first Python version for which no extra requires a package, as it has no wheel; empty for none."""
-    from importlib.metadata import PackageNotFoundError, requires  # takes 10 ms, and is needed for errors alone
+    """Return the first Python version for which a package has no wheel, else empty.
+
+    It is the version from which no extra requires the package.
+    """
+    from importlib.metadata import PackageNotFoundError, requires  # takes 10 ms, needed only for errors
 
     try:
         asked = requires("linkwright") or []
-    except PackageNotFoundError:  # it runs out of a folder
+    except PackageNotFoundError:  # Linkwright runs from a folder without being installed
         return ()
     found = [line for line in asked if re.match(rf"{re.escape(package)}\b", line)]
     ends = [tuple(map(int, end.groups())) for line in found if (end := re.search(_BEFORE, line.replace('"', "'")))]
@@ -93,14 +102,14 @@ def _newest_python(package: str) -> tuple[int, ...]:
 
 
 def missing_extra(code: str, error: ModuleNotFoundError) -> LinkwrightError:
-    """Return the error about a missing extra.
+    """Return the error for a library that cannot be imported because an extra is missing.
 
     Args:
-        code: of the finding.
-        error: what the import of the library raised.
+        code: the code of the finding.
+        error: the exception that the import of the library raised.
 
     Raises:
-        ModuleNotFoundError: the same, when the module is that of no extra.
+        ModuleNotFoundError: `error` itself, if the module belongs to no extra.
     """
     package = (error.name or "").partition(".")[0]
     if package not in _BY_MODULE:

@@ -1,7 +1,7 @@
-"""How this Linkwright was installed, and the commands that add to it.
+"""How this Linkwright was installed, and the commands that add packages to it.
 
-Installers record that: ``direct_url.json`` (PEP 610) names the origin of a distribution, and ``pipx_metadata.json`` or
-``uv-receipt.toml`` marks an environment that belongs to a tool, which recreates it when it installs again.
+Installers record this: ``direct_url.json`` (PEP 610) names the origin of a distribution, and ``pipx_metadata.json`` or
+``uv-receipt.toml`` marks an environment that belongs to a tool, which recreates the environment when it installs again.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ class Origin:
     """The origin of a distribution.
 
     Attributes:
-        place: a path, or an address; empty for a package index.
-        editable: whether the files of the checkout are those that run.
+        place: a path or a URL; empty for a package index.
+        editable: whether the distribution runs from the files of the checkout.
         name: the name of the distribution.
     """
 
@@ -46,11 +46,11 @@ class Origin:
 
     @property
     def is_gone(self) -> bool:
-        """Whether it was a checkout or a file that no longer exists."""
+        """Whether the origin is a checkout or a file that no longer exists."""
         return bool(self.place) and "://" not in self.place and not Path(self.place).exists()
 
     def words(self, extras: Iterable[str]) -> list[str]:
-        """Return the installer's arguments that install it with extras."""
+        """Return the installer's arguments that install the distribution with extras."""
         wanted = f"[{','.join(sorted(extras))}]" if extras else ""
         if "://" in self.place:
             return [f"{self.name}{wanted} @ {self.place}"]
@@ -65,10 +65,11 @@ class Installation:
     """A distribution in an environment.
 
     Attributes:
-        origin: where it came from.
-        tool: the words of pip or uv that install into the environment; `PIPX` or `UV_TOOL` where it belongs to one.
-        extras: those that the environment's tool was asked for, and would leave out if it were not told again.
-        beside: as `extras`, other packages.
+        origin: the origin of the distribution.
+        tool: the words of pip or uv that install into the environment; `PIPX` or `UV_TOOL` if it belongs to such a
+            tool.
+        extras: the extras that the tool was asked to install, and that it would drop if they were not requested again.
+        beside: other packages that the tool was asked to install, and that it would drop in the same way.
     """
 
     origin: Origin
@@ -77,11 +78,11 @@ class Installation:
     beside: tuple[str, ...] = ()
 
     def command_for_extras(self, *extras: str) -> str:
-        """The command that adds extras of Linkwright."""
+        """Return the command that adds extras of Linkwright."""
         return self._command(self.tool, {*self.extras, *extras}, self.beside)
 
     def command_for_packages(self, *packages: str) -> str:
-        """The command that adds other packages, by the names that pip knows them by."""
+        """Return the command that adds other packages, which are given by their names for pip."""
         if self.tool == PIPX:
             return _quoted(["pipx", "inject", self.origin.name, *packages])
         if self.tool == UV_TOOL:
@@ -100,7 +101,7 @@ _CACHE_OF_UV = ("archive-v", "environments-v")
 
 
 def find_installation() -> Installation:
-    """Find out how the Linkwright that runs was installed."""
+    """Return how the running Linkwright was installed."""
     return installation_in(Path(sys.prefix), _origin())
 
 
@@ -109,7 +110,7 @@ def installation_in(prefix: Path, origin: Origin) -> Installation:
 
     Args:
         prefix: the environment's folder.
-        origin: where Linkwright came from.
+        origin: the origin of Linkwright.
     """
     pipx, receipt = prefix / "pipx_metadata.json", prefix / "uv-receipt.toml"
     if pipx.is_file():
@@ -122,13 +123,13 @@ def installation_in(prefix: Path, origin: Origin) -> Installation:
         others = tuple(asked["name"] for asked in requirements if asked["name"] != origin.name)
         extras = frozenset(extra for asked in own for extra in asked.get("extras", ()))
         return Installation(origin, UV_TOOL, extras, others)
-    if prefix.parent.name.startswith(_CACHE_OF_UV):  # uvx made it for this run alone
+    if prefix.parent.name.startswith(_CACHE_OF_UV):  # uvx created the environment for this run only
         return Installation(origin, UV_TOOL)
     return Installation(origin, _pip(prefix, origin))
 
 
 def origin_of(direct_url: Mapping[str, Any], name: str = NAME) -> Origin:
-    """Return the origin of a distribution of this name from its ``direct_url.json``."""
+    """Return the origin of a distribution, given its ``direct_url.json``."""
     url = direct_url["url"]
     if version_control := direct_url.get("vcs_info"):
         revision = version_control.get("requested_revision")
@@ -149,7 +150,7 @@ def _origin() -> Origin:
         with suppress(metadata.PackageNotFoundError):
             direct_url = metadata.distribution(name).read_text("direct_url.json")
             return origin_of(json.loads(direct_url), name) if direct_url else Origin(name=name)
-    checkout = Path(__file__).parents[3]  # it runs out of a folder
+    checkout = Path(__file__).parents[3]  # Linkwright runs from a folder without being installed
     return Origin(str(checkout), editable=True) if (checkout / "pyproject.toml").is_file() else Origin()
 
 
@@ -159,7 +160,7 @@ def _pip(prefix: Path, origin: Origin) -> tuple[str, ...]:
         found = shutil.which("pip")
         in_reach = found is not None and Path(found).parent == Path(sys.executable).parent
         return ("pip", "install") if in_reach else (sys.executable, "-m", "pip", "install")
-    own = Path(origin.place, ".build", "uv", "bin", "uv")  # where the Makefile has it, where the system has none
+    own = Path(origin.place, ".build", "uv", "bin", "uv")  # installed by the Makefile
     uv = str(own) if shutil.which("uv") is None and own.is_file() else "uv"
     active = os.environ.get("VIRTUAL_ENV", "") == str(prefix)
     return (uv, "pip", "install", *(() if active else ("--python", str(prefix))))
@@ -171,7 +172,7 @@ def _extras_in(requirement: str) -> frozenset[str]:
 
 
 def _quoted(words: list[str]) -> str:
-    """Return a line for the user's shell; that of Windows only has double quotes."""
+    """Return a command line for the user's shell; the shell of Windows has only double quotes."""
     if sys.platform == "win32":
         return " ".join(word if _PLAIN.fullmatch(word) else f'"{word}"' for word in words)
     return shlex.join(words)

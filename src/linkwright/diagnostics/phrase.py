@@ -1,7 +1,8 @@
-"""Translatable texts: an English template and its arguments.
+"""Translatable texts, which consist of an English template and its arguments.
 
-A `Phrase` is an ordinary string, the English text. To translate it, a reader looks up its template in the catalogue of
-the other language and formats that with the same arguments, translated if they are phrases themselves.
+A `Phrase` is an ordinary string that contains the English text. To translate it, a reader looks up its template in the
+catalogue of another language, and formats the result with the same arguments, which are translated if they are phrases
+themselves.
 """
 
 from __future__ import annotations
@@ -24,24 +25,28 @@ RULES = "rule"
 
 
 class Wording(Protocol):
-    """A language's catalogue, like gettext's translations; an unknown text is returned unchanged."""
+    """The catalogue of a language, like gettext's translations.
+
+    An unknown text is returned unchanged.
+    """
 
     def gettext(self, message: str, /) -> str:
-        """The template in this language."""
+        """Return the template in this language."""
 
     def ngettext(self, one: str, many: str, count: int, /) -> str:
-        """Return the template for the number, in this language."""
+        """Return the singular or plural template for a count, in this language."""
 
     def pgettext(self, context: str, message: str, /) -> str:
-        """The translation of a template that has several by context."""
+        """Return the translation of a template that depends on the context."""
 
 
 class Phrase(str):
-    """An English text that can be translated; made by `phrase` and the functions after it.
+    """An English text that can be translated; created by `phrase` and the functions after it.
 
     Attributes:
-        template: with a named placeholder for each argument; without arguments the text itself, braces and all.
-        arguments: what fills the placeholders: phrases, the user's own words, numbers.
+        template: the text with a named placeholder for each argument; without arguments, the text itself with its
+            braces.
+        arguments: the values of the placeholders: phrases, the user's own words, numbers.
     """
 
     __slots__ = ("arguments", "template")
@@ -49,7 +54,7 @@ class Phrase(str):
     arguments: Mapping[str, object]
 
     def __new__(cls, template: str, arguments: Mapping[str, object] | None = None) -> Self:
-        """Fill the template in."""
+        """Create the phrase by filling in its template."""
         kept = {name: _kept(value) for name, value in (arguments or {}).items()}
         self = super().__new__(cls, template.format_map(kept) if kept else template)
         self.template = template
@@ -57,19 +62,22 @@ class Phrase(str):
         return self
 
     def __str__(self) -> Phrase:
-        """Return the phrase itself, so that an exception raised with it returns it."""
+        """Return the phrase itself.
+
+        The text of an exception raised with it is therefore still a phrase.
+        """
         return self
 
     def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
         return type(self), (self.template, self.arguments)
 
     def translated_text(self, wording: Wording) -> str:
-        """The text in another language."""
+        """Return the text in another language."""
         return self._filled(wording.gettext(self.template), wording) if self.template else ""
 
     @property
     def chosen_template(self) -> str:
-        """The English template; of a singular and a plural one, the one for the count."""
+        """The English template; for a phrase with singular and plural, the template for its count."""
         return self.template
 
     def translated(self, wording: Wording) -> Phrase:
@@ -79,7 +87,7 @@ class Phrase(str):
     def _filled(self, template: str, wording: Wording) -> str:
         if not self.arguments:
             return template
-        from string import Formatter  # here, because commands that speak English need none of it
+        from string import Formatter  # imported here, because commands in English do not need it
 
         text = ""
         after_phrase = False
@@ -164,7 +172,7 @@ class _Known(Phrase):
 
 
 class _Joined(Phrase):
-    """Several things in a row."""
+    """Several texts joined with separators."""
 
     __slots__ = ("items", "last", "separator")
     items: tuple[str, ...]
@@ -190,15 +198,16 @@ def phrase(template: str, **arguments: object) -> Phrase:
     """Return a text that can be translated.
 
     Args:
-        template: the English text, a literal: the catalogues are checked against the literals in the source. Each
-            argument has a placeholder by its name, optionally with a number format: ``{length:g} m``.
-        arguments: the user's own words, numbers, or phrases, which are translated too.
+        template: the English text, which must be a literal, because the catalogues are checked against the literals in
+            the source. Each argument has a placeholder with its name, optionally with a number format: ``{length:g}
+            m``.
+        arguments: the user's own words, numbers, or phrases, which are translated, too.
     """
     return Phrase(template, arguments)
 
 
 def counted(one: str, several: str, count: int, **arguments: object) -> Phrase:
-    """Return a text with a count, whose English has a singular and a plural.
+    """Return a translatable text with a count, whose English has a singular and a plural.
 
     Args:
         one: the template for the singular; ``{count}`` is the number.
@@ -210,17 +219,26 @@ def counted(one: str, several: str, count: int, **arguments: object) -> Phrase:
 
 
 def term(word: str) -> Phrase:
-    """A word or text that comes from a table or a file, such as the tag ``link``; looked up as a whole, among terms."""
+    """Return a phrase for a term from a table or a file, such as the tag ``link``.
+
+    It is translated as a whole, among the terms.
+    """
     return _Known(word, TERMS)
 
 
 def title_of_page(text: str) -> Phrase:
-    """The title of the page on a rule or diagnostic code; looked up as a whole, among titles."""
+    """Return a phrase for the title of the page on a rule or diagnostic code.
+
+    It is translated as a whole, among the titles.
+    """
     return _Known(text, RULES)
 
 
 def foreign(words: object) -> Phrase:
-    """Return a text of another program, such as that of an exception; translated if a catalogue has it."""
+    """Return a phrase for a text of another program, such as an exception's.
+
+    It is translated if a catalogue has it.
+    """
     text = str(words)
     return text if isinstance(text, Phrase) else _Known(text, FOREIGN)
 
@@ -235,19 +253,19 @@ def joined(texts: Iterable[str], separator: str = ", ", last: str | None = None)
 
     Args:
         texts: the user's own words or phrases.
-        separator: the text between two of them.
-        last: the separator before the last one, such as ``" or "``.
+        separator: the text between two items.
+        last: the separator before the last item, such as ``" or "``.
     """
     return _Joined(tuple(texts), separator, separator if last is None else last)
 
 
 def quoted_names(names: Iterable[object], last: str | None = None) -> Phrase:
-    """Names in a row, each between quotation marks: ``'a', 'b' or 'c'``."""
+    """Join names, each in quotation marks: ``'a', 'b' or 'c'``."""
     return joined(map(quoted, names), last=last)
 
 
 def as_phrase(text: str) -> Phrase:
-    """Return the text if it is a phrase, else a phrase of the whole text."""
+    """Return the text if it is a phrase, else a phrase that consists of the text."""
     return text if isinstance(text, Phrase) else Phrase(text)
 
 
@@ -261,7 +279,7 @@ def _in_a_row(items: Iterable[str], separator: str, last: str) -> str:
 
 
 def _spaced(left: str, right: str) -> str:
-    """Join two texts, with a blank between Latin and Chinese letters, as is usual in Chinese."""
+    """Join two texts, with a space between Latin and Chinese letters, as is usual in Chinese."""
     return f"{left} {right}" if _meet(left[-1:], right[:1]) else left + right
 
 

@@ -1,4 +1,4 @@
-"""Diagnostics as text for a terminal and as plain data."""
+"""Formats diagnostics as text for a terminal and as plain data."""
 
 from __future__ import annotations
 
@@ -29,16 +29,20 @@ _SEEN_AS = {
 
 
 def wants_colour(stream: IO[str]) -> bool:
-    """Return whether to colour the output to a stream: a terminal, unless NO_COLOR is set or TERM is dumb."""
+    """Return whether output to a stream is coloured.
+
+    It is coloured on a terminal, unless NO_COLOR is set or TERM is ``dumb``.
+    """
     if os.environ.get("NO_COLOR"):
         return False
     return stream.isatty() and os.environ.get("TERM") != "dumb"
 
 
 def render(diagnostic: Diagnostic, *, colour: bool = False, lang: str = "en") -> str:
-    """The diagnostic as a terminal shows it: head line, place, excerpt with a caret, notes and hint.
+    """Format a diagnostic for a terminal.
 
-    Its texts are printed as they are; `lang` is the language of the words beside them, such as "error" and "hint".
+    The result has a head line, the place, an excerpt with a caret, notes and the hint. The diagnostic's texts are
+    printed unchanged; `lang` is the language of the labels, such as "error" and "hint".
     """
     paint = _Paint(colour)
     words = labels(lang)
@@ -57,9 +61,10 @@ def render(diagnostic: Diagnostic, *, colour: bool = False, lang: str = "en") ->
 
 
 def print_diagnostics(diagnostics: Iterable[Diagnostic], stream: IO[str]) -> None:
-    """Write diagnostics to a stream, in the reader's language, coloured where the stream wants it.
+    """Write diagnostics to a stream, in the reader's language.
 
-    Of more than `MOST_PRINTED` the rest is counted; formats for programs have them all.
+    They are coloured if the stream supports it. If there are more than `MOST_PRINTED`, the rest is only counted;
+    formats for programs contain all of them.
     """
     colour, lang = wants_colour(stream), language()
     found = list(diagnostics)
@@ -72,7 +77,7 @@ def print_diagnostics(diagnostics: Iterable[Diagnostic], stream: IO[str]) -> Non
 
 
 def _most_severe(found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
-    """Return at most `MOST_PRINTED` findings, errors before the rest, in their order."""
+    """Return at most `MOST_PRINTED` findings in their order, preferring errors."""
     if len(found) <= MOST_PRINTED:
         return found
     numbers = sorted(range(len(found)), key=lambda number: found[number].severity is not Severity.ERROR)
@@ -80,10 +85,10 @@ def _most_severe(found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
 
 
 def to_data(diagnostic: Diagnostic) -> dict[str, Any]:
-    """The diagnostic as JSON-ready data: places are 1-based, absent ones are None.
+    """Convert a diagnostic to JSON-ready data.
 
-    ``template`` and ``arguments`` are what the message is made of, in English: the same finding has the same template
-    for every robot and in every language.
+    Positions are 1-based, and missing ones are None. ``template`` and ``arguments`` are the parts of the message, in
+    English: the same finding has the same template for every robot and in every language.
     """
     message = as_phrase(diagnostic.message)
     return {
@@ -143,7 +148,7 @@ def _excerpt(diagnostic: Diagnostic, paint: _Paint) -> list[str]:
         marked = line[span.column - 1 : max(span.end_column - 1, span.column)]
     else:
         marked = line[span.column - 1 :]
-    if len(line) > _WIDEST:  # such as a whole robot in one line
+    if len(line) > _WIDEST:  # for example, an entire robot in one line
         cut = max(0, len(before) - _AROUND)
         end = len(before) + _AROUND
         line = f"{'...' if cut else ''}{line[cut:end]}{'...' if end < len(line) else ''}"
@@ -162,12 +167,15 @@ def _excerpt(diagnostic: Diagnostic, paint: _Paint) -> list[str]:
 
 
 def printable(text: str) -> str:
-    """Return the text as a terminal may print it: control characters are replaced by visible ones."""
+    """Return the text with control characters replaced by visible ones.
+
+    A terminal can print the result.
+    """
     return text.translate(_SEEN_AS)
 
 
 def shown_width(text: str) -> int:
-    """Return the number of terminal columns of a text."""
+    """Return the number of terminal columns that a text takes."""
     return sum(map(_columns, text))
 
 
@@ -188,7 +196,7 @@ def _indented(text: str) -> str:
 
 
 def display_path(path: str | Path) -> str:
-    """Return a path as messages show it: relative to the current folder if it is below it."""
+    """Return a path in the form for messages: relative to the current folder if it is below it."""
     text = str(path)
     relative = os.path.relpath(text)
     return text if relative.startswith("..") else relative

@@ -1,4 +1,4 @@
-"""Nearest names for hints."""
+"""Searches for similar names, which hints suggest."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 _LISTED = 8
 _ADDRESSES = ("http:", "https:", "ftp:")
-_ADDRESS = r"(?:^|/)((?:https?|ftp):)/+(.+)"  # not compiled here: few commands need it
+_ADDRESS = r"(?:^|/)((?:https?|ftp):)/+(.+)"  # compiled only on use, because few commands need it
 _MOST_COMPARED = 1_000
 """Of more names than these, only those are compared that begin alike and are about as long."""
 _WORD = r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_]+"
@@ -24,12 +24,12 @@ _SHORT = 2
 
 
 def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
-    """Return the candidates that may be meant by `name`, best first, ignoring case.
+    """Return the candidates that `name` may be meant to be, best first, ignoring case.
 
-    A common word, such as in the names of two robots' descriptions, is not enough: the names may only differ by typing
+    A common word, as in the names of two robots' descriptions, is not enough: the names may only differ by typing
     errors, missing words, or the order of words.
     """
-    from difflib import get_close_matches  # here, because most runs of a command end without a hint
+    from difflib import get_close_matches  # imported here, because most commands need no hint
 
     by_fold: dict[str, str] = {}
     for candidate in candidates:
@@ -44,12 +44,15 @@ def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
 
 
 def words_of(name: str) -> list[str]:
-    """The words of a name, in lower case, split at separators, capitals and numbers."""
+    """Return the words of a name in lower case, split at separators, capitals and numbers."""
     return [word.casefold() for word in re.findall(_WORD, name)]
 
 
 def _is_alike(name: str, other: str) -> bool:
-    """Return whether one name may mean another: the words that they do not share are typing errors, or extra."""
+    """Return whether one name may be meant to be another.
+
+    The words that they do not share must be typing errors, or extra words of one of them.
+    """
     words, others = words_of(name), words_of(other)
     if "".join(words) == "".join(others):
         return True
@@ -68,7 +71,7 @@ def _is_alike(name: str, other: str) -> bool:
 
 
 def _is_slip(word: str, meant: str) -> bool:
-    """Return whether a word is another one misspelt or cut short; no number is a slip for another."""
+    """Return whether a word is a misspelling or abbreviation of another; numbers never are."""
     shorter, longer = sorted((word, meant), key=len)
     if word.isdigit() or meant.isdigit():
         return False
@@ -82,21 +85,27 @@ def _is_slip(word: str, meant: str) -> bool:
 
 
 def _is_left_of(shorter: str, longer: str) -> bool:
-    """Return whether letters of the longer word, half of them or more, make the shorter one: ``cnt`` of ``count``."""
+    """Return whether a word is another one without some letters, such as ``cnt`` of ``count``.
+
+    At most half of the letters may be omitted.
+    """
     letters = iter(longer)
     return len(shorter) < len(longer) <= 2 * len(shorter) and all(letter in letters for letter in shorter)
 
 
 def is_misspelt(name: str, names: Iterable[str]) -> bool:
-    """Return whether a name differs from one of others by a letter: missing, extra, wrong, or swapped with the next.
+    """Return whether a name differs from another by a missing, extra, wrong or swapped letter.
 
-    Long names may have more such errors, one for every ten letters.
+    Long names may have more errors, one more for every ten letters.
     """
     return any(_is_within(name, other, 1 + len(name) // 10) for other in names)
 
 
 def _is_within(one: str, other: str, most: int) -> bool:
-    """Return whether so many slips make one text of another (the distance called optimal string alignment)."""
+    """Return whether two texts differ by at most `most` errors.
+
+    Errors are counted by the optimal string alignment distance.
+    """
     if abs(len(one) - len(other)) > most:
         return False
     before: list[int] = []
@@ -114,7 +123,7 @@ def _is_within(one: str, other: str, most: int) -> bool:
 
 
 def did_you_mean(name: str, candidates: Iterable[str]) -> Phrase | None:
-    """A hint such as ``did you mean 'radius'?``, or None if no candidate is near."""
+    """Return a hint such as ``did you mean 'radius'?``, or None if no candidate is similar."""
     return _meant(nearest(name, candidates))
 
 
@@ -123,7 +132,10 @@ def _meant(names: Sequence[str]) -> Phrase | None:
 
 
 def _like(name: str, names: Iterable[str]) -> list[str]:
-    """Return the names of files that may be meant, compared without extension: 'a.urdf' is not like 'robot.urdf'."""
+    """Return the file names that may be meant, compared without extension.
+
+    The extensions must match, too: 'a.urdf' is not like 'robot.urdf'.
+    """
     stem, ending = _parts(name)
     stems: dict[str, list[str]] = {}
     for other in names:
@@ -134,24 +146,32 @@ def _like(name: str, names: Iterable[str]) -> list[str]:
 
 
 def _parts(name: str) -> tuple[str, str]:
-    """Return the name of a file without its extension, and the extension: '.urdf.xacro' for 'robot.urdf.xacro'."""
+    """Split the name of a file into stem and extension.
+
+    The extension of 'robot.urdf.xacro' is '.urdf.xacro'.
+    """
     dot = name.find(".", 1)
     return (name, "") if dot < 0 else (name[:dot], name[dot:])
 
 
 def as_typed(path: str | os.PathLike[str]) -> str:
-    """Return a path as its user typed it: an address of the web that was taken for a path has both slashes again."""
+    """Return a path as its user typed it.
+
+    A URL that was treated as a path gets its second slash back.
+    """
     shown = os.fspath(path)
     address = re.search(_ADDRESS, shown)
     return shown if address is None else f"{address[1]}//{address[2]}"
 
 
 def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -> Phrase:
-    """A hint for a missing file: the missing folder, the nearest names beside it, or all names there.
+    """Return a hint for a missing file.
+
+    It names the missing folder, the nearest file names there, or all file names there.
 
     Args:
-        path: of the file.
-        wanted: which names may be meant; those with the same ending when left out.
+        path: the path of the missing file.
+        wanted: a predicate for names that may be meant; by default names with the same extension.
     """
     if any(part in path.parts for part in _ADDRESSES):
         return phrase("files are not fetched from the network: download it, and name the file")

@@ -1,4 +1,4 @@
-"""Diagnostics in the forms that people and programs read."""
+"""Formats in which people and programs read diagnostics."""
 
 from linkwright.diagnostics.formats.choice import FORMATS, format_diagnostics
 

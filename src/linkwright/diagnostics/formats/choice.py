@@ -1,4 +1,4 @@
-"""The formats, by the values of ``--format``."""
+"""The output formats, by the values of ``--format``."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ _Formatter = Callable[[Iterable[Diagnostic]], str]
 
 
 def format_diagnostics(diagnostics: Iterable[Diagnostic], form: str) -> str:
-    """Diagnostics as text that ends with a newline; empty for none in the forms that have a line for each.
+    """Format diagnostics as text that ends with a newline.
 
-    Their texts are in English unless another language was asked for by name (`--lang`).
+    In the formats with one line for each diagnostic, the result is empty if there are none. The texts are in English
+    unless another language was requested by name (`--lang`).
 
     Args:
-        diagnostics: in the order in which they are to be shown.
-        form: one of `FORMATS` but ``text``, which `linkwright.diagnostics.print_diagnostics` writes.
+        diagnostics: the diagnostics in the order in which they are to be shown.
+        form: a key of `FORMATS` except ``text``, which `linkwright.diagnostics.print_diagnostics` writes.
     """
     if form not in FORMATS or form == "text":
         raise ValueError(f"no format '{form}'")

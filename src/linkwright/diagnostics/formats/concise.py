@@ -1,4 +1,7 @@
-"""One line for each diagnostic, as editors and ``grep`` read them: ``FILE:LINE:COLUMN: CODE message``."""
+"""One line for each diagnostic: ``FILE:LINE:COLUMN: CODE message``.
+
+Editors and ``grep`` expect this format.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from linkwright.diagnostics.render import display_path, printable
 
 
 def to_text(diagnostics: Iterable[Diagnostic]) -> str:
-    """The diagnostics, a line each."""
+    """Format diagnostics, one per line."""
     return "".join(f"{_line(diagnostic)}\n" for diagnostic in diagnostics)
 
 

@@ -1,4 +1,7 @@
-"""Workflow commands of GitHub Actions, which shows each diagnostic beside its line in the pull request."""
+"""Workflow commands of GitHub Actions.
+
+GitHub shows each diagnostic next to its line in the pull request.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO
 
 
 def to_text(diagnostics: Iterable[Diagnostic]) -> str:
-    """Return the diagnostics, one command for each."""
+    """Format diagnostics as workflow commands, one for each."""
     return "".join(f"{_command(diagnostic)}\n" for diagnostic in diagnostics)
 
 
@@ -22,7 +25,7 @@ def _command(diagnostic: Diagnostic) -> str:
         properties["file"] = display_path(span.file)
         properties["line"] = str(span.line)
         properties["endLine"] = str(span.end_line)
-        if span.end_line == span.line:  # GitHub refuses columns on an annotation over several lines
+        if span.end_line == span.line:  # GitHub rejects columns in an annotation of several lines
             properties["col"] = str(span.column)
             properties["endColumn"] = str(max(span.column, span.end_column - 1))
     properties["title"] = diagnostic.code

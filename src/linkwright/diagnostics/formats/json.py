@@ -1,4 +1,7 @@
-"""JSON: an object with ``diagnostics``, a list; places count from 1, absent ones are null."""
+"""JSON: an object with a list ``diagnostics``.
+
+Positions count from 1, and missing ones are null.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,6 @@ from linkwright.diagnostics.render import to_data
 
 
 def to_text(diagnostics: Iterable[Diagnostic]) -> str:
-    """The diagnostics as one JSON object."""
+    """Format diagnostics as one JSON object."""
     data = {"diagnostics": [to_data(diagnostic) for diagnostic in diagnostics]}
     return json.dumps(data, indent=2, ensure_ascii=False) + "\n"

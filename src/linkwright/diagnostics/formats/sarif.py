@@ -19,7 +19,10 @@ _ROOT = "ROOT"
 
 
 def to_text(diagnostics: Iterable[Diagnostic]) -> str:
-    """The diagnostics as a SARIF log of one run; files below the current folder are named relative to it."""
+    """Format diagnostics as a SARIF log of one run.
+
+    Files below the current folder get relative names.
+    """
     found = list(diagnostics)
     codes = sorted({diagnostic.code for diagnostic in found})
     log = {
@@ -44,14 +47,20 @@ def to_text(diagnostics: Iterable[Diagnostic]) -> str:
 
 
 def _rule(code: str, found: Iterable[Diagnostic]) -> dict[str, Any]:
-    """Return a rule of SARIF for a code with its messages here; a message's id is its English template."""
+    """Return the SARIF rule for a code with the messages found.
+
+    A message's ID is its English template.
+    """
     messages = {diagnostic.message: as_phrase(diagnostic.message) for diagnostic in found if diagnostic.code == code}
     templates = {message.chosen_template: {"text": _numbered(message)[0]} for message in messages.values()}
     return {"id": code, "messageStrings": templates}
 
 
 def _message(diagnostic: Diagnostic) -> dict[str, Any]:
-    """Return the text to show, and template and arguments for grouping or translation (SARIF 2.1.0, 3.11)."""
+    """Return a message as SARIF (SARIF 2.1.0, 3.11).
+
+    It has the text, and the template and arguments for grouping or translation.
+    """
     message = as_phrase(diagnostic.message)
     hint = f". Hint: {diagnostic.hint}" if diagnostic.hint else ""
     result: dict[str, Any] = {"text": message + hint, "id": message.chosen_template}
@@ -60,7 +69,10 @@ def _message(diagnostic: Diagnostic) -> dict[str, Any]:
 
 
 def _numbered(message: Phrase) -> tuple[str, list[str]]:
-    """Return the template of a message with numbered placeholders, as in SARIF, and their values in order."""
+    """Return a message's template with numbered placeholders, and their values in order.
+
+    SARIF uses numbers in place of names.
+    """
     template = message.chosen_template
     if not message.arguments:
         return _without_placeholders(template), []

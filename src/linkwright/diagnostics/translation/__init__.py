@@ -1,7 +1,8 @@
-"""Diagnostics in the user's language: which language that is, and the catalogues of texts.
+"""Diagnostics in the user's language.
 
-Messages are written in English where they are reported. A catalogue maps the English templates of each code to another
-language; a template that it does not have stays English. Codes, places and the user's own words never change.
+The package chooses the language, and has the catalogues of texts. Messages are written in English where they are
+reported. A catalogue maps the English templates of each code to another language; a template that is missing from it
+stays English. Codes, places and the user's own words never change.
 """
 
 from linkwright.diagnostics.translation.translate import (

@@ -1,4 +1,4 @@
-"""A diagnostic in another language: the catalogues, and the language that is asked for."""
+"""Translation of diagnostics: the catalogues, and the requested language."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ _asked: str | None = None
 
 
 def set_language(code: str | None) -> None:
-    """Set the language, one of `LANGUAGES`, for the rest of the program's run; None for that of the environment."""
+    """Set the language, one of `LANGUAGES`, for the rest of the process.
+
+    None selects the environment's language.
+    """
     global _asked  # noqa: PLW0603 - the language is one for the whole process, as the locale is
     if code is not None and code not in LANGUAGES:
         raise ValueError(f"there is no language '{code}'; the languages are {', '.join(LANGUAGES)}")
@@ -35,12 +38,15 @@ def set_language(code: str | None) -> None:
 
 
 def asked_language() -> str | None:
-    """Return the language that was set, or None. Output for programs is not in English only if a language was set."""
+    """Return the language that was set, or None.
+
+    Output for programs is in English unless a language was set.
+    """
     return _asked
 
 
 def language() -> str:
-    """The language for people, one of `LANGUAGES`."""
+    """Return the language of output for people, one of `LANGUAGES`."""
     if _asked is not None:
         return _asked
     for name in _VARIABLES:
@@ -51,9 +57,10 @@ def language() -> str:
 
 
 def language_of(locale: str) -> str | None:
-    """The language of a locale's name such as ``zh_CN.UTF-8``; None if messages are not known in it.
+    """Return the language of a locale such as ``zh_CN.UTF-8``.
 
-    Any Chinese locale reads simplified characters: we have no others.
+    The result is None if there are no messages in this language. Any Chinese locale selects simplified characters,
+    because there are no others.
     """
     name = locale.strip().replace("-", "_").partition(".")[0].partition("_")[0].casefold()
     return name if name in LANGUAGES else None
@@ -61,8 +68,11 @@ def language_of(locale: str) -> str | None:
 
 @cache
 def wording(language: str) -> NullTranslations:
-    """Return the catalogue of a language, read once; an empty one in a checkout without a compiled one."""
-    from gettext import GNUTranslations, NullTranslations  # English needs none of it
+    """Return the catalogue of a language, which is read once.
+
+    It is empty in a checkout without a compiled catalogue.
+    """
+    from gettext import GNUTranslations, NullTranslations  # imported here, because English does not need it
 
     try:
         with open(f"{os.path.dirname(__file__)}/{language}.mo", "rb") as file:  # noqa: PTH120, PTH123 - pathlib is slow to import
@@ -75,24 +85,30 @@ _LABELS = ("error", "warning", "info", "note", "hint", ": ")
 
 
 def labels(lang: str | None = None) -> Mapping[str, str]:
-    """Return the labels of severities, notes and hints, and the colon after them, by default in the user's language."""
+    """Return the labels of severities, notes and hints, and the colon after them.
+
+    The default is the user's language.
+    """
     lang = language() if lang is None else lang
     return {label: label if lang == "en" else term(label).translated_text(wording(lang)) for label in _LABELS}
 
 
 def translated(diagnostics: Iterable[Diagnostic], *, for_programs: bool = False) -> Iterable[Diagnostic]:
-    """The diagnostics in the reader's language.
+    """Return the diagnostics in the reader's language.
 
     Args:
-        diagnostics: in English, as they are made.
-        for_programs: a program reads them; it gets English unless another language was asked for by name.
+        diagnostics: the diagnostics in English, as they are created.
+        for_programs: whether a program reads them, which gets English unless another language was requested by name.
     """
     lang = (asked_language() or "en") if for_programs else language()
     return diagnostics if lang == "en" else [translate(diagnostic, lang) for diagnostic in diagnostics]
 
 
 def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
-    """Return the diagnostic with its texts in a language of `LANGUAGES`; unknown texts stay English."""
+    """Return the diagnostic with its texts in a language of `LANGUAGES`.
+
+    Unknown texts stay English.
+    """
     if lang == "en":
         return diagnostic
     words = wording(lang)
@@ -104,13 +120,16 @@ def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
 
 
 def localized(text: str, lang: str | None = None) -> str:
-    """Return a text in a language of `LANGUAGES`, by default the user's; a text that is not a phrase stays the same."""
+    """Return a text in a language of `LANGUAGES`, by default the user's.
+
+    A plain string is returned unchanged.
+    """
     lang = language() if lang is None else lang
     return text.translated_text(wording(lang)) if lang != ENGLISH and isinstance(text, Phrase) else text
 
 
 def translate_phrase(text: Phrase, lang: str) -> str:
-    """Return a phrase in a language of `LANGUAGES`, whatever its present language."""
+    """Return a phrase in a language of `LANGUAGES`, regardless of its current language."""
     return text.translated_text(wording(lang))
 
 
