@@ -1,4 +1,7 @@
-"""Find common problems of a running graph: observe it for a few seconds, and examine plain data."""
+"""Finds common problems of a running graph.
+
+It observes the graph for a few seconds, and examines the recorded data.
+"""
 
 from linkwright.doctor.examination import examine
 from linkwright.doctor.parameter_files import examine_parameter_files

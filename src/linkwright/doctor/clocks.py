@@ -1,4 +1,4 @@
-"""Problems of time: stamps far from now, simulated time that some nodes follow and others do not."""
+"""Problems of time: stamps far from now, and simulated time that only some of the nodes use."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _CLOCK = "/clock"
 
 
 def examine_clocks(seen: Observation) -> Iterator[Diagnostic]:
-    """Find problems of stamps and of simulated time."""
+    """Find problems with stamps and simulated time."""
     yield from _simulated(seen)
     yield from _stamps(seen)
 
@@ -27,7 +27,7 @@ def _simulated(seen: Observation) -> Iterator[Diagnostic]:
     on = sorted(node for node, value in seen.sim_time.items() if value)
     off = sorted(node for node, value in seen.sim_time.items() if not value)
     senders = nodes_of(seen.publishers_of(_CLOCK))
-    off = [node for node in off if node not in senders and not _is_hidden(node)]  # who makes time need not follow it
+    off = [node for node in off if node not in senders and not _is_hidden(node)]  # publishers of /clock need not use it
     if on and not senders:
         yield Diagnostic(
             "DOC602",

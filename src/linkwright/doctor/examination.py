@@ -14,7 +14,7 @@ _ORDER = (Severity.ERROR, Severity.WARNING, Severity.INFO)
 
 
 def examine(seen: Observation) -> list[Diagnostic]:
-    """Run all examinations; the findings (codes ``DOC...``), the worst first."""
+    """Run all examinations, and return the findings (codes ``DOC...``), the most severe first."""
     robots, found = robots_in(seen)
     found += examine_environment(seen)
     found += examine_frames(seen, robots)

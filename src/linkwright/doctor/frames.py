@@ -1,4 +1,4 @@
-"""Problems of frames: without a transform, with two publishers, or not connected to the others."""
+"""Problems of frames: no transform, two publishers, or no connection to the other frames."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _OF_THE_WORLD = ("/world_rays", "/world_rays/others")
 
 
 def examine_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    """Find problems of frames and their transforms."""
+    """Find problems with frames and their transforms."""
     yield from _contradictions(seen)
     yield from _numbers(seen)
     circle = _circle(seen.transforms)
@@ -96,7 +96,10 @@ def _numbers(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _circle(transforms: Sequence[TransformSeen]) -> list[str]:
-    """Return the frames of the cycle of parents that a frame is in; empty if it is not in one."""
+    """Return the frames of a cycle of parents, or an empty list if there is none.
+
+    The first frame is repeated at the end.
+    """
     parent = {transform.child: transform.parent for transform in transforms}
     done: set[str] = set()
     for start in parent:
@@ -112,7 +115,10 @@ def _circle(transforms: Sequence[TransformSeen]) -> list[str]:
 
 
 def _missing(seen: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
-    """Yield findings on missing frames of a robot's links, one for frames with the same reason."""
+    """Yield findings on missing frames of a robot's links.
+
+    Frames with the same cause share a finding.
+    """
     there = {transform.child for transform in seen.transforms}
     without = [joint for joint in robot.joints if robot.frame(joint.child) not in there]
     if not without:
@@ -254,7 +260,7 @@ def _trees(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnosti
     roots = sorted({transform.parent for transform in seen.transforms} - children)
     if len(roots) < 2:
         return
-    # A robot's own missing transforms were reported above; they need no second finding.
+    # The missing transforms of robots were reported above and need no second finding.
     broken = {robot.frame(joint.child) for robot in robots for joint in robot.joints} - children
     apart = [root for root in roots if root not in broken]
     if len(apart) < 2:
@@ -294,7 +300,7 @@ def _fixed_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Di
     known = {name for transform in seen.transforms for name in (transform.parent, transform.child)}
     known |= {robot.frame(robot.root) for robot in robots}
     if seen.publishers_of(_WORLD_POSES):
-        known.add(_WORLD)  # the viewer places tf's frames in it
+        known.add(_WORLD)  # the viewer places the frames of tf in the world frame
     roots = sorted(
         {transform.parent for transform in seen.transforms} - {transform.child for transform in seen.transforms}
     )
@@ -320,7 +326,7 @@ def _fixed_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Di
 
 
 def _frames_of_messages(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    """Findings on messages in frames without a transform; those of robots are named as such."""
+    """Yield findings on messages in frames without a transform, except in frames of robots."""
     if not seen.transforms:
         return
     known = {name for transform in seen.transforms for name in (transform.parent, transform.child)}
@@ -347,7 +353,7 @@ def _frames_of_messages(seen: Observation, robots: Sequence[RobotSeen]) -> Itera
 
 
 def _another(roots: Sequence[str]) -> Phrase:
-    """A hint for a fixed frame that does not exist."""
+    """Return a hint on what to use instead of a fixed frame that does not exist."""
     if not roots:
         return phrase("choose another Fixed Frame")
     if len(roots) == 1:

@@ -1,4 +1,7 @@
-"""Greetings between computers, over a topic and by UDP multicast, and the table of received ones."""
+"""Greetings between computers, and the table of received greetings.
+
+Greetings are sent over a topic and by UDP multicast.
+"""
 
 from __future__ import annotations
 
@@ -12,19 +15,22 @@ _RULE = "-" * 60
 
 
 def greeting(host: str) -> str:
-    """Return the greeting of a computer, which ros2doctor understands."""
+    """Return the greeting that a computer sends, which ros2doctor understands."""
     return f"{_GREETING}{host}"
 
 
 def host_of(text: str) -> str:
-    """Return the computer of a greeting; empty if the text is not one."""
+    """Return the name of the computer that sent a greeting: its last word.
+
+    The result is empty for an empty text.
+    """
     words = text.split()
     return words[-1] if words else ""
 
 
 @dataclass
 class Greetings:
-    """The greetings sent and received since the table was last printed.
+    """The greetings sent and received since the last table was printed.
 
     Attributes:
         own: the name of this computer, whose own greetings do not count.
@@ -54,7 +60,7 @@ class Greetings:
             heard[host] += 1
 
     def take_table(self, topic: str, period: float) -> str:
-        """Return the table, as ``ros2 doctor hello`` prints it, and begin the next one.
+        """Return the table as ``ros2 doctor hello`` prints it, and start the next one.
 
         Args:
             topic: the name of the topic.

@@ -1,4 +1,4 @@
-"""Problems of parameter files: sections for nodes that do not run."""
+"""Problems of parameter files: sections for nodes that are not running."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.graph.parameters.files import read_parameter_file
 
 
 def examine_parameter_files(seen: Observation, files: Iterable[str | Path]) -> Iterator[Diagnostic]:
-    """Find problems of the parameter files of a running graph.
+    """Find problems with the parameter files of a running graph.
 
     Raises:
         LinkwrightError: GRAPH211 and GRAPH212, a file cannot be read.

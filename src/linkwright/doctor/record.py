@@ -16,14 +16,14 @@ UNKNOWN_NODE = "an unknown node"
 
 @dataclass(frozen=True, slots=True)
 class TransformSeen:
-    """The transforms of one frame to one parent.
+    """The observed transforms from a frame to one of its parents.
 
     Attributes:
         parent: the parent frame.
-        child: the frame.
-        senders: full names of the nodes that published it, sorted.
-        static: whether it came on a topic of static transforms.
-        valid: whether all its numbers are finite and its rotation is one.
+        child: the child frame.
+        senders: full names of the nodes that published the transform, sorted.
+        static: whether it was published on a topic of static transforms.
+        valid: whether all its numbers are finite and its rotation is not zero.
     """
 
     parent: str
@@ -35,12 +35,12 @@ class TransformSeen:
 
 @dataclass(frozen=True, slots=True)
 class JointSeen:
-    """The states of one joint.
+    """The observed states of a joint.
 
     Attributes:
-        name: of the joint.
-        senders: full names of the nodes that published it, sorted.
-        topics: where it came, sorted.
+        name: the name of the joint.
+        senders: full names of the nodes that published the states, sorted.
+        topics: the topics on which they were published, sorted.
     """
 
     name: str
@@ -50,10 +50,10 @@ class JointSeen:
 
 @dataclass(frozen=True, slots=True)
 class DescriptionSeen:
-    """A robot description.
+    """An observed robot description.
 
     Attributes:
-        topic: where it came.
+        topic: the topic on which it was published.
         sender: full name of the node that published it.
         text: the URDF.
     """
@@ -65,13 +65,13 @@ class DescriptionSeen:
 
 @dataclass(frozen=True, slots=True)
 class StampSeen:
-    """The stamps of one node on one topic.
+    """The observed stamps of a node on a topic.
 
     Attributes:
         topic: the topic.
         sender: the full name of the publishing node.
-        behind_ns: how far the last stamp was behind the clock on arrival; negative when ahead.
-        zero: whether the stamp was 0, that is, never set.
+        behind_ns: how far the last stamp was behind the clock on arrival, in nanoseconds; negative if it was ahead.
+        zero: whether the stamp was 0, which means that it was never set.
     """
 
     topic: str
@@ -82,12 +82,12 @@ class StampSeen:
 
 @dataclass(frozen=True, slots=True)
 class FrameSeen:
-    """A frame of the messages of one node on one topic.
+    """The observed frame of a node's messages on a topic.
 
     Attributes:
-        topic: where they came.
+        topic: the topic on which the messages were published.
         sender: full name of the node that published them.
-        frame: its name, as the last message had it.
+        frame: the name of the frame in the last message.
     """
 
     topic: str
@@ -100,8 +100,8 @@ class DriversSeen:
     """Nodes that sent contradicting velocities at the same time on one topic.
 
     Attributes:
-        topic: where they came, as Twist or TwistStamped.
-        drivers: full names of the nodes that published them, sorted; one twice where two nodes have it.
+        topic: the topic on which the velocities were published, as Twist or TwistStamped.
+        drivers: full names of the nodes that published them, sorted; a name occurs twice if two nodes have it.
     """
 
     topic: str
@@ -110,12 +110,12 @@ class DriversSeen:
 
 @dataclass(frozen=True, slots=True)
 class ClockSeen:
-    """The messages of ``/clock``.
+    """The observed messages of ``/clock``.
 
     Attributes:
-        ticks: how many times.
-        first_ns: the first time.
-        last_ns: the last time.
+        ticks: the number of messages.
+        first_ns: the time in the first message, in nanoseconds.
+        last_ns: the time in the last message, in nanoseconds.
     """
 
     ticks: int
@@ -141,21 +141,22 @@ class Observation:
     """All observations of a graph.
 
     Attributes:
-        seconds: the duration.
-        nodes: full names, each as often as there are nodes with it.
+        seconds: the duration of the observation.
+        nodes: full names of the nodes; a name is repeated if several nodes have it.
         endpoints: publishers, subscriptions, services and clients.
         transforms: the transforms published.
         joints: the joint states published.
         descriptions: the robot descriptions published.
         stamps: the stamps of topics whose messages have a header.
         frames: the frames of messages, for topics whose messages have a header.
-        disputed: topics with several drivers at once.
+        disputed: topics with several drivers at the same time.
         clock: the observations of ``/clock``; None if it has no messages.
-        sim_time: ``use_sim_time`` of the nodes that answered, by full name.
+        sim_time: ``use_sim_time`` of the nodes that responded, by full name.
         lifecycle: states of the managed nodes, by full name.
         fixed_frames: the Fixed Frames of viewers.
-        environment: the environment variables that decide about discovery.
-        over_zenoh: whether the graph was observed over Zenoh, where no QoS keeps endpoints apart, and not over DDS.
+        environment: the environment variables that affect discovery.
+        over_zenoh: whether the graph was observed over Zenoh, where QoS does not keep endpoints apart, and not over
+            DDS.
     """
 
     seconds: float = 0.0
@@ -175,26 +176,32 @@ class Observation:
     over_zenoh: bool = False
 
     def of_kind(self, kind: EndpointKind) -> list[EndpointInfo]:
-        """The endpoints of a kind."""
+        """Return the endpoints of a kind."""
         return [endpoint for endpoint in self.endpoints if endpoint.kind is kind]
 
     def publishers_of(self, topic: str) -> list[EndpointInfo]:
-        """The publishers of a topic."""
+        """Return the publishers of a topic."""
         return [endpoint for endpoint in self.of_kind(EndpointKind.PUBLISHER) if endpoint.name == topic]
 
 
 def node_of(endpoint: EndpointInfo) -> str:
-    """The full name of the node that an endpoint belongs to."""
+    """Return the full name of the node to which an endpoint belongs."""
     return UNKNOWN_NODE if endpoint.node is None else join(endpoint.node.namespace, endpoint.node.name)
 
 
 def nodes_of(endpoints: Iterable[EndpointInfo]) -> list[str]:
-    """The full names of the nodes that endpoints belong to, each once, sorted."""
+    """Return the sorted full names of the nodes to which endpoints belong.
+
+    Each name occurs only once.
+    """
     return sorted({node_of(endpoint) for endpoint in endpoints})
 
 
 def listed(names: Iterable[str], limit: int = 6) -> Phrase:
-    """Return names in quotes, separated by commas; of many the first ones, and the number of the others."""
+    """Return names in quotes, separated by commas.
+
+    If there are more than `limit`, the result has the first ones, and the number of the rest.
+    """
     every = list(names)
     shown = quoted_names(every[:limit])
     return phrase("{names} and {more} more", names=shown, more=len(every) - limit) if len(every) > limit else shown

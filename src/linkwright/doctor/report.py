@@ -1,4 +1,7 @@
-"""The report of ``ros2 doctor --report``: the computer, its network, the packages, the graph."""
+"""The report of ``ros2 doctor --report``.
+
+It covers the computer, its network, the packages and the graph.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,7 @@ _PADDING = 4
 
 
 def report(seen: Observation) -> str:
-    """All sections of the report."""
+    """Return the report with all its sections."""
     return sections_text(
         [
             ("NETWORK CONFIGURATION", _network()),
@@ -52,7 +55,7 @@ def _network() -> list[tuple[str, str]]:
     items = [("host", socket.gethostname())]
     try:
         names = [name for _, name in socket.if_nameindex()]
-    except (AttributeError, OSError):  # not on every system
+    except (AttributeError, OSError):  # not available on every system
         names = []
     for name in names:
         items.append(("device", name))
@@ -63,7 +66,10 @@ def _network() -> list[tuple[str, str]]:
 
 
 def _address(interface: str) -> str:
-    """The IPv4 address of an interface; empty if it has none or the system does not tell."""
+    """Return the IPv4 address of an interface.
+
+    The result is empty if it has none or the system does not provide it.
+    """
     if not sys.platform.startswith("linux"):
         return ""
     import fcntl

@@ -21,8 +21,8 @@ class RobotSeen:
     Attributes:
         topic: the topic.
         sender: the full name of the node that published the description.
-        model: the description, read.
-        prefix: the prefix of frame names before the links' names (``frame_prefix``).
+        model: the parsed description.
+        prefix: the prefix that is put before the links' names to form frame names (``frame_prefix``).
     """
 
     topic: str
@@ -32,12 +32,12 @@ class RobotSeen:
 
     @property
     def root(self) -> str:
-        """The link without a joint above it."""
+        """The name of the root link, which has no parent joint."""
         return self.model.root
 
     @property
     def joints(self) -> Sequence[Joint]:
-        """All joints."""
+        """All joints of the robot."""
         return list(self.model.joints.values())
 
     @property
@@ -46,11 +46,14 @@ class RobotSeen:
         return frozenset(self.model.joints)
 
     def frame(self, link: str) -> str:
-        """The frame of a link."""
+        """Return the frame of a link."""
         return f"{self.prefix}{link}"
 
     def leader(self, joint: Joint) -> str:
-        """The name of the joint whose state positions a joint: its own, or that of the one it mimics."""
+        """Return the name of the joint whose state positions a joint.
+
+        It is the joint itself, or the joint that it mimics.
+        """
         followed: set[str] = set()
         while joint.mimic is not None and joint.name not in followed and joint.mimic.joint in self.model.joints:
             followed.add(joint.name)
@@ -59,7 +62,10 @@ class RobotSeen:
 
 
 def robots_in(seen: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
-    """Read the robots from their descriptions, with findings on those that cannot be read."""
+    """Read the observed descriptions, and return the robots.
+
+    Findings on unreadable descriptions are returned, too.
+    """
     robots: dict[tuple[str, str], RobotSeen] = {}
     found = []
     for description in seen.descriptions:
@@ -87,7 +93,10 @@ def robots_in(seen: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
 
 
 def _prefix(robot: Robot, seen: Observation) -> str:
-    """The prefix of most links' names among the observed frames; empty for none."""
+    """Return the prefix of the robot's links among the observed frames.
+
+    It is the prefix with which most links' names occur, or empty.
+    """
     frames = {name for transform in seen.transforms for name in (transform.parent, transform.child)}
     if any(link in frames for link in robot.links):
         return ""
@@ -96,7 +105,7 @@ def _prefix(robot: Robot, seen: Observation) -> str:
 
 
 def examine_robots(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    """Find problems of descriptions and joint states."""
+    """Find problems with descriptions and joint states."""
     yield from _several_descriptions(seen)
     yield from _contradictions(seen)
     if len(robots) == 1:

@@ -1,4 +1,7 @@
-"""Problems of nodes, topics and services: names, types, quality of service, managed nodes that are not active."""
+"""Problems of nodes, topics and services.
+
+They concern names, types, quality of service, and inactive managed nodes.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ _MOST_DIFFERENT = 3
 
 
 def examine_topics(seen: Observation) -> Iterator[Diagnostic]:
-    """Find problems of nodes, topics and services."""
+    """Find problems with nodes, topics and services."""
     yield from _same_names(seen)
     yield from _types(seen)
     yield from _qos(seen)
@@ -81,7 +84,10 @@ def _types(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _without_takers_of_all(types: dict[str, list[EndpointInfo]]) -> dict[str, list[EndpointInfo]]:
-    """Return a topic's endpoints by type, without nodes that subscribe to all published types; none if all do."""
+    """Return a topic's endpoints by type, without nodes that subscribe to all published types.
+
+    The result is empty if all subscribing nodes do so.
+    """
     every = [endpoint for endpoints in types.values() for endpoint in endpoints]
     published = {endpoint.type_name for endpoint in every if endpoint.kind is EndpointKind.PUBLISHER}
     heard: dict[str, set[str]] = {}
@@ -174,7 +180,7 @@ def _remedy(policy: QoSPolicyKind) -> Phrase:
 
 
 def _terms(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
-    """Return the value of a policy at an endpoint, by its name in code and on command lines."""
+    """Return the value of a policy at an endpoint, as it is named in code and on command lines."""
     value = getattr(endpoint.qos, policy.name.lower())
     if policy is QoSPolicyKind.LIVELINESS:
         return f"{value.name} ({endpoint.qos.liveliness_lease_duration})"
@@ -182,7 +188,10 @@ def _terms(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
 
 
 def _misnamed(seen: Observation) -> Iterator[tuple[str, str, list[EndpointInfo], str]]:
-    """Yield findings on topics without a publisher, with the published topic that is probably meant."""
+    """Yield topics without a publisher for which a published topic is probably meant.
+
+    Each item has the topic, its type, its subscriptions, and the published topic.
+    """
     published: dict[str, set[str]] = {}
     senders: dict[str, set[str]] = {}
     for endpoint in seen.of_kind(EndpointKind.PUBLISHER):
@@ -194,7 +203,8 @@ def _misnamed(seen: Observation) -> Iterator[tuple[str, str, list[EndpointInfo],
             wanting.setdefault((endpoint.name, endpoint.type_name), []).append(endpoint)
     heard = {endpoint.name for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION)}
     for (topic, type_name), endpoints in sorted(wanting.items()):
-        # A topic that has a subscriber is probably meant for it, and a node does not mean to hear itself.
+        # A published topic that already has a subscriber is probably meant for it, and no node means to subscribe to
+        # itself.
         takers = set(nodes_of(endpoints))
         unheard = [
             name
@@ -270,7 +280,7 @@ def _unheard_commands(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _two_drivers(seen: Observation) -> Iterator[Diagnostic]:
-    """Findings on nodes that contradicted each other on one topic."""
+    """Yield findings on nodes that sent contradicting velocities on one topic."""
     for drivers_seen in seen.disputed:
         yield Diagnostic(
             "DOC208",
@@ -286,7 +296,10 @@ def _two_drivers(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _alike(name: str, candidates: list[str]) -> str | None:
-    """Return the candidate that is probably meant: in another namespace, or with similar spelling."""
+    """Return the candidate that is probably meant, or None.
+
+    It is in another namespace, or has a similar spelling.
+    """
     last = name.rpartition("/")[2]
     same_end = [candidate for candidate in candidates if candidate.rpartition("/")[2] == last]
     near = nearest(name, [candidate for candidate in candidates if abs(len(candidate) - len(name)) <= _MOST_DIFFERENT])
@@ -333,7 +346,7 @@ def _unserved(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def examine_lifecycle(seen: Observation) -> Iterator[Diagnostic]:
-    """Findings on managed nodes that are not active."""
+    """Find managed nodes that are not active."""
     waiting: dict[str, list[str]] = {}
     for node, state in seen.lifecycle.items():
         if state in ("unconfigured", "inactive"):

@@ -1,4 +1,4 @@
-"""Observes a running graph for some seconds."""
+"""Observation of a running graph for some seconds."""
 
 from __future__ import annotations
 
@@ -83,14 +83,14 @@ async def observe(
     fixed_frames: Sequence[FixedFrame] = (),
     environment: Mapping[str, str] | None = None,
 ) -> Observation:
-    """Observe a graph.
+    """Observe a graph, and return the observations.
 
     Args:
-        graph: the graph, joined with other processes; on the running event loop.
-        node: the observing node of this graph, which the observation leaves out.
+        graph: the graph, joined with other processes, on the running event loop.
+        node: the observing node of this graph, which is left out of the observations.
         seconds: the duration.
         fixed_frames: the Fixed Frames of viewers that do not have them in a parameter.
-        environment: the environment variables; those of this process by default.
+        environment: the environment variables; by default those of this process.
     """
     watcher = _Watcher(graph, node)
     end = time.monotonic() + seconds
@@ -142,12 +142,18 @@ class _Watcher:
         self.clock: ClockSeen | None = None
 
     def nodes(self) -> list[str]:
-        """Return the full names of the nodes, except the watcher's own and other tools' hidden ones."""
+        """Return the full names of the nodes.
+
+        The watcher's own node and hidden nodes of other tools are excluded.
+        """
         names = (join(identity.namespace, identity.name) for identity in self._graph.identities())
         return sorted(name for name in names if not _is_tool(name) and name != self._own)
 
     def endpoints(self) -> list[EndpointInfo]:
-        """The endpoints of those nodes."""
+        """Return the endpoints.
+
+        Those of the watcher's own node and of other tools' hidden nodes are excluded.
+        """
         return [
             endpoint
             for endpoint in self._graph.endpoints()
@@ -155,9 +161,10 @@ class _Watcher:
         ]
 
     async def until_named(self) -> None:
-        """Wait until the node of every endpoint is known, which is discovered a moment after the endpoint.
+        """Wait until the node of every endpoint is known.
 
-        Until then another command's endpoints would count as a part of the graph.
+        A node is discovered a moment after its endpoints. Before that, the endpoints of another command would count as
+        a part of the graph.
         """
         end = time.monotonic() + _NAMED_WITHIN
         while time.monotonic() < end:
@@ -166,7 +173,10 @@ class _Watcher:
             await asyncio.sleep(_LOOK_AGAIN)
 
     def waits_for_transforms(self) -> bool:
-        """Return whether published transforms have not arrived yet: on a busy machine the first take seconds."""
+        """Return whether published transforms have yet to arrive.
+
+        On a busy machine, the first ones take seconds.
+        """
         heard = {topic for senders, _, _ in self._transforms.values() for topic in senders}
         return not self._awaited <= heard
 
@@ -175,7 +185,10 @@ class _Watcher:
         return self._node.get_fully_qualified_name()
 
     def subscribe(self) -> None:
-        """Subscribe to new topics of interest; the publisher of velocities may be a tool (``topic pub``)."""
+        """Subscribe to new topics of interest.
+
+        Topics of tools such as ``topic pub`` count only if they carry velocities.
+        """
         for endpoint in self._graph.endpoints():
             key = (endpoint.name, endpoint.type_name)
             if _is_tool(node_of(endpoint)) and endpoint.type_name not in (TWIST, TWIST_STAMPED):
@@ -193,7 +206,7 @@ class _Watcher:
         last = topic.rpartition("/")[2]
         if kind == _TF:
             if last not in _TRANSFORMS or topic.startswith(_MODELS):
-                return  # the poses of a simulated world are of no frames; a bridge takes those of gz's models to /tf
+                return  # poses of a simulated world have no frames; a bridge publishes the poses of gz's models on /tf
             is_static = last == _TRANSFORMS[1]
             self._awaited.add(topic)
             self._listen(endpoint, lambda message, info: self._on_transforms(topic, is_static, message, info))
@@ -210,7 +223,10 @@ class _Watcher:
             self._listen(endpoint, lambda data, info: self._on_stamped(topic, data, info, driving=driving), raw=True)
 
     def _listen(self, endpoint: EndpointInfo, callback: Any, *, raw: bool = False) -> None:
-        """Subscribe with a profile that matches every publisher; latched ones are asked for their last messages."""
+        """Subscribe with a QoS profile that matches every publisher.
+
+        Latched topics deliver their last messages.
+        """
         offers = [publisher.qos for publisher in self._publishers(endpoint.name)]
         latched = all(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
         reliable = all(offer.reliability is ReliabilityPolicy.RELIABLE for offer in offers)
@@ -241,7 +257,7 @@ class _Watcher:
             if endpoint.name == topic and endpoint.kind is EndpointKind.PUBLISHER
         ]
 
-    # --- what is heard -----------------------------------------------------------------------------------------------
+    # --- messages received -------------------------------------------------------------------------------------------
 
     def _on_transforms(self, topic: str, is_static: bool, message: Any, info: MessageInfo) -> None:
         sender = self._sender(topic, info)
@@ -285,29 +301,35 @@ class _Watcher:
         self._frames[topic, sender] = _frame_of(data)
 
     def _note_stamp(self, topic: str, sender: str, seconds: int, nanoseconds: int) -> None:
-        """Record the stamp of a message; a latched one, such as a map, may have any age."""
+        """Record the stamp of a message.
+
+        On latched topics such as a map, only stamps of 0 are recorded, because others may have any age.
+        """
         if topic in self._latched and (seconds or nanoseconds):
             return
         self._stamps[topic, sender] = (seconds * NANOSECONDS_PER_SECOND + nanoseconds, time.time_ns())
 
-    # --- what is made of it ------------------------------------------------------------------------------------------
+    # --- observations from the messages ------------------------------------------------------------------------------
 
     def transforms(self) -> tuple[TransformSeen, ...]:
-        """The transforms, by parent and child; their senders by one topic, as a bridge may forward those of another."""
+        """Return the transforms, sorted by parent and child.
+
+        The senders are those on one topic, because a bridge may forward the transforms of another topic.
+        """
         return tuple(
             TransformSeen(parent, child, max(map(tuple, map(sorted, senders.values())), key=len), is_static, valid)
             for (parent, child), (senders, is_static, valid) in sorted(self._transforms.items())
         )
 
     def joints(self) -> tuple[JointSeen, ...]:
-        """The joints, by name."""
+        """Return the joints, sorted by name."""
         return tuple(
             JointSeen(name, tuple(sorted(senders)), tuple(sorted(topics)))
             for name, (senders, topics) in sorted(self._joints.items())
         )
 
     def disputed(self) -> tuple[DriversSeen, ...]:
-        """The nodes that contradicted each other, by topic."""
+        """Return the nodes that contradicted each other, by topic."""
         found = []
         for topic, dispute in sorted(self._disputes.items()):
             drivers = drivers_of(self._graph, publishers_of(self._graph, dispute.parties))
@@ -316,9 +338,10 @@ class _Watcher:
         return tuple(found)
 
     def stamps_seen(self, sim_time: Mapping[str, bool]) -> tuple[StampSeen, ...]:
-        """Return the stamps relative to the clock of their senders: simulated time if they use or publish it.
+        """Return the stamps relative to the clock of their senders.
 
-        One that does not may hand stamps on that others made, so the nearer clock counts.
+        That is simulated time if they use or publish it. A sender that does neither may forward stamps of other nodes,
+        so the nearer clock counts.
         """
         found = []
         makers = {node_of(publisher) for publisher in self._publishers("/clock")}
@@ -328,42 +351,48 @@ class _Watcher:
                     continue
                 now_ns = self.clock.last_ns
             behind_ns = now_ns - stamp_ns
-            if self.clock is not None:  # a bridge, and robot_state_publisher, hand on stamps of simulated time
+            if self.clock is not None:  # bridges and robot_state_publisher forward stamps of simulated time
                 behind_ns = min(behind_ns, self.clock.last_ns - stamp_ns, key=abs)
             found.append(StampSeen(topic, sender, behind_ns, zero=stamp_ns == 0))
         return tuple(found)
 
     def frames_seen(self) -> tuple[FrameSeen, ...]:
-        """The frames of messages, by topic and sender; empty ones are left out."""
+        """Return the frames of messages, by topic and sender; empty frames are omitted."""
         named = sorted(item for item in self._frames.items() if item[1])
         return tuple(FrameSeen(topic, sender, frame) for (topic, sender), frame in named)
 
-    # --- what is asked -----------------------------------------------------------------------------------------------
+    # --- service calls -----------------------------------------------------------------------------------------------
 
     async def sim_time(self) -> dict[str, bool]:
-        """``use_sim_time`` of each node that responds."""
+        """Return ``use_sim_time`` of each node that responds."""
         kind = "rcl_interfaces/srv/GetParameters"
         answers = await self._ask_all(kind, "get_parameters", names=["use_sim_time"])
         return {node: bool(answer.values[0].bool_value) for node, answer in answers.items() if answer.values}
 
     async def lifecycle(self) -> dict[str, str]:
-        """The state of each managed node that responds."""
+        """Return the state of each managed node that responds."""
         answers = await self._ask_all("lifecycle_msgs/srv/GetState", "get_state")
         return {node: answer.current_state.label for node, answer in answers.items()}
 
     async def fixed_frames(self) -> list[FixedFrame]:
-        """The fixed frame of each viewer that has it as a parameter, as Linkwright's has."""
+        """Return the fixed frame of each viewer that has it as a parameter.
+
+        Linkwright's viewer does.
+        """
         subscriptions = [endpoint for endpoint in self.endpoints() if endpoint.kind is EndpointKind.SUBSCRIPTION]
         viewers = {node_of(subscription) for subscription in subscriptions if subscription.type_name == _TF}
         package = "rcl_interfaces/srv"
         listed = await self._ask_all(f"{package}/ListParameters", "list_parameters", viewers, prefixes=[_FIXED_FRAME])
-        # A node that has no such parameter would complain when asked for it.
+        # A node without this parameter would log an error if it were requested.
         with_frame = {node for node, answer in listed.items() if _FIXED_FRAME in answer.result.names}
         answers = await self._ask_all(f"{package}/GetParameters", "get_parameters", with_frame, names=[_FIXED_FRAME])
         return [FixedFrame(answer.values[0].string_value, f"'{node}'") for node, answer in sorted(answers.items())]
 
     async def _ask_all(self, kind: str, service: str, among: set[str] | None = None, **fields: Any) -> dict[str, Any]:
-        """Return the responses of the nodes with a service that arrive in time, by their full names."""
+        """Call a service of all nodes that have it, and return the responses by full node name.
+
+        Only responses that arrive in time are included.
+        """
         from linkwright.messages import get_service
 
         served = {
@@ -392,14 +421,14 @@ async def _result(future: Future[Any]) -> Any:
 
 
 def _frame_of(data: bytes) -> str:
-    """The frame in the header at the beginning of a message in CDR; the rest of the message is not read."""
+    """Return the frame in the header at the beginning of a message in CDR; the rest is not read."""
     start = _CDR_HEADER + _STAMP[0].size
     size = int.from_bytes(data[start : start + 4], "little" if data[1] & 1 else "big")
     return data[start + 4 : start + 4 + size].rstrip(b"\0").decode(errors="replace").lstrip("/")
 
 
 def _is_tool(full_name: str) -> bool:
-    """Return whether a node belongs to a command that looks at the graph."""
+    """Return whether a node belongs to a command that inspects the graph."""
     return full_name.rpartition("/")[2].startswith("_ros2cli")
 
 
@@ -409,7 +438,7 @@ def _begins_with_header(type_name: str) -> bool:
 
     try:
         fields = get_message(type_name).get_fields_and_field_types()
-    except LinkwrightError:  # a type of a package that is not here
+    except LinkwrightError:  # the package of the type is not available
         return False
     return next(iter(fields.items()), None) == ("header", "std_msgs/Header")
 
