@@ -1,1 +1,1 @@
-"""Files and folders of the user: reading, writing, and where the program keeps its own."""
+"""Files and folders of the user, and the locations of the program's own data."""

@@ -1,7 +1,7 @@
-"""Reading files that may be pipes or devices: no read waits for a missing writer, and each one ends.
+"""Reading of files that may be pipes or devices.
 
-Opening a named pipe (FIFO) waits until a program opens its other end, which may be never. It imports little, because
-short commands load it.
+No read waits for a missing writer, and every read ends. Opening a named pipe (FIFO) normally blocks until a program
+opens its other end, which may never happen. This module imports little, because short commands load it.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ import io
 import os
 import stat
 
-_FIRST_READ = 1 << 17  # most files are shorter, and room for more takes time to get
+_FIRST_READ = 1 << 17  # most files are shorter, and allocating more takes time
 _NOT_BLOCKING = getattr(os, "O_NONBLOCK", 0)  # Windows has no such pipes
-_FLAGS = os.O_RDONLY | _NOT_BLOCKING | getattr(os, "O_BINARY", 0)  # Windows reads texts by default
+_FLAGS = os.O_RDONLY | _NOT_BLOCKING | getattr(os, "O_BINARY", 0)  # Windows reads in text mode by default
 _pipes: dict[tuple[int, int], bytes] = {}
 """Device and number of a pipe -> its content: a pipe can be read once, and a command may read twice."""
 
@@ -23,17 +23,17 @@ LARGEST_TEXT = 100_000_000
 
 
 class NoWriterError(OSError):
-    """A pipe is empty, and no program has opened it for writing."""
+    """Raised when a pipe is empty and no program has opened it for writing."""
 
 
 def read_file(path: str | os.PathLike[str], at_most: int) -> bytes:
-    """The content of a file, up to so many bytes.
+    """Return the content of a file, up to `at_most` bytes.
 
-    For a pipe, that is everything written to it until its writers have closed it, as with ``<(command)`` in a shell; if
-    it has no writer any more, the content that was read before.
+    For a pipe, the content is everything written to it until its writers have closed it, as with ``<(command)`` in a
+    shell. If the pipe has no writer any more, the content that was read before is returned.
 
     Raises:
-        OSError: it cannot be read; `NoWriterError`, it is a pipe without a writer.
+        OSError: the file cannot be read; `NoWriterError`, it is a pipe without a writer.
     """
     descriptor = os.open(path, _FLAGS)
     try:
@@ -49,12 +49,12 @@ def _content(descriptor: int, path: str | os.PathLike[str], at_most: int) -> byt
     data = b""
     if stat.S_ISREG(kind.st_mode):
         data = os.read(descriptor, min(at_most, _FIRST_READ))
-        if len(data) == min(at_most, kind.st_size):  # as nearly always; a file object would take twice as long
+        if len(data) == min(at_most, kind.st_size):  # the usual case; a file object would take twice as long
             return data
     with open(descriptor, "rb", closefd=False) as file:
         if stat.S_ISREG(kind.st_mode):
             return data + file.read(at_most - len(data))
-        first: bytes | None = file.read(1) if stat.S_ISFIFO(kind.st_mode) else None  # None: there will be something
+        first: bytes | None = file.read(1) if stat.S_ISFIFO(kind.st_mode) else None  # None: no data yet, but a writer
         identity = kind.st_dev, kind.st_ino
         if first == b"" and identity not in _pipes:
             raise NoWriterError(errno.ENXIO, "it is a pipe without a writer", os.fspath(path))
@@ -69,11 +69,11 @@ def _content(descriptor: int, path: str | os.PathLike[str], at_most: int) -> byt
 
 
 def read_text(path: str | os.PathLike[str], encoding: str = "utf-8") -> str:
-    """The text of a file, its line ends as Python has them.
+    """Return the text of a file, with line ends converted to ``\\n`` as Python does.
 
     Raises:
-        OSError: see `read_file`; or it has `LARGEST_TEXT` bytes or more.
-        UnicodeDecodeError: it is not text.
+        OSError: see `read_file`; also if the file has `LARGEST_TEXT` bytes or more.
+        UnicodeDecodeError: the file is not text.
     """
     data = read_file(path, LARGEST_TEXT)
     if len(data) == LARGEST_TEXT:

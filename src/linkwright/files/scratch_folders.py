@@ -1,8 +1,9 @@
-"""Temporary folders that do not outlive their process for long, however it ends.
+"""Temporary folders that do not long outlive their process, however it ends.
 
-A folder is removed when it is closed, or when Python ends. A process that is killed leaves it, so the next process that
-makes one removes the folders of processes that have ended. A lock on the folder (flock(2)), which ends with the
-process, marks those in use. A process ID in the name would not do: containers that share ``/tmp`` have their own IDs.
+A folder is removed when it is closed, or when Python ends. A process that is killed leaves its folder behind, so the
+next process that creates one removes the folders of processes that have ended. Folders in use are marked by a lock
+(flock(2)), which ends with the process. A process ID in the name would not work, because containers that share ``/tmp``
+have separate process IDs.
 """
 
 from __future__ import annotations
@@ -28,8 +29,8 @@ class ScratchFolder(TemporaryDirectory[str]):
     """A temporary folder.
 
     Args:
-        purpose: a word of the folder's name.
-        place: the folder that it is made in; that of the system for temporary files when left out.
+        purpose: a word for the folder's name.
+        place: the folder in which it is created; the system's folder for temporary files by default.
     """
 
     def __init__(self, purpose: str, place: Path | None = None) -> None:
@@ -39,15 +40,18 @@ class ScratchFolder(TemporaryDirectory[str]):
         self._unlock = None if lock is None else weakref.finalize(self, os.close, lock)
 
     def cleanup(self) -> None:
-        """Remove the folder and all in it."""
+        """Remove the folder and its contents."""
         super().cleanup()
         if self._unlock is not None:
             self._unlock()
 
 
 def remove_abandoned(place: Path) -> None:
-    """Remove the scratch folders of processes that have ended; folders that cannot be removed stay."""
-    if sys.platform == "win32":  # there are no locks on folders
+    """Remove the scratch folders of processes that have ended.
+
+    Folders that cannot be removed are kept.
+    """
+    if sys.platform == "win32":  # Windows cannot lock folders
         return
     with suppress(OSError):
         with os.scandir(place) as entries:
@@ -72,7 +76,10 @@ def _remove_if_abandoned(entry: os.DirEntry[str]) -> None:
 
 
 def _locked(folder: Path) -> int | None:
-    """Lock a folder until this file descriptor is closed; None if it is locked already, or there are no locks."""
+    """Lock a folder, and return the file descriptor that holds the lock until it is closed.
+
+    The result is None if the folder is locked already, or if the system has no such locks.
+    """
     if sys.platform == "win32":
         return None
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)

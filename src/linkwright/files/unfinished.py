@@ -1,4 +1,4 @@
-"""Files that are being written and need an end, such as recordings: they are finished before the process ends.
+"""Files being written, such as recordings, that must be finished before the process ends.
 
 Code that ends a process without waiting for its event loop, which may hang, calls `finish_all` first.
 """
@@ -10,27 +10,30 @@ from weakref import WeakValueDictionary
 
 
 class Unfinished(Protocol):
-    """Something whose end is written by another thread than its own, if need be."""
+    """The interface of a writer whose file must be finished, if necessary by another thread."""
 
     def finish(self) -> object:
-        """Write the end, and nothing afterwards; called from any thread, even if its own one is busy."""
+        """Write the end of the file, and nothing afterwards.
+
+        This may be called from any thread, even if the writer's own thread is busy.
+        """
 
 
 _unfinished: WeakValueDictionary[int, Unfinished] = WeakValueDictionary()
 
 
 def begun(what: Unfinished) -> None:
-    """Have something finished before the process is ended."""
+    """Register a writer, so that its file is finished before the process ends."""
     _unfinished[id(what)] = what
 
 
 def finished(what: Unfinished) -> None:
-    """Its end is written."""
+    """Unregister a writer whose file is finished."""
     _unfinished.pop(id(what), None)
 
 
 def finish_all() -> None:
-    """Finish whatever has begun."""
+    """Finish the files of all registered writers."""
     for reference in _unfinished.valuerefs():
         what = reference()
         if what is not None:

@@ -1,4 +1,4 @@
-"""The folders in which the program keeps data of a user.
+"""The folders in which the program stores a user's data.
 
 Source: the XDG Base Directory Specification.
 """
@@ -15,22 +15,34 @@ _DEFAULTS = {"CACHE": ".cache", "CONFIG": ".config", "DATA": ".local/share", "ST
 
 
 def cache_folder() -> Path:
-    """Return the folder of data that can be made again: ``XDG_CACHE_HOME/linkwright`` or ``~/.cache/linkwright``."""
+    """Return the folder of data that can be recreated.
+
+    It is ``XDG_CACHE_HOME/linkwright`` or ``~/.cache/linkwright``.
+    """
     return _folder("CACHE")
 
 
 def config_folder() -> Path:
-    """Return the folder of the user's settings: ``XDG_CONFIG_HOME/linkwright`` or ``~/.config/linkwright``."""
+    """Return the folder of the user's settings.
+
+    It is ``XDG_CONFIG_HOME/linkwright`` or ``~/.config/linkwright``.
+    """
     return _folder("CONFIG")
 
 
 def data_folder() -> Path:
-    """Return the folder of installed data: ``XDG_DATA_HOME/linkwright`` or ``~/.local/share/linkwright``."""
+    """Return the folder of installed data.
+
+    It is ``XDG_DATA_HOME/linkwright`` or ``~/.local/share/linkwright``.
+    """
     return _folder("DATA")
 
 
 def state_folder() -> Path:
-    """Return the folder of data that outlives a run: ``XDG_STATE_HOME/linkwright`` or ``~/.local/state/linkwright``."""
+    """Return the folder of data that outlives a run.
+
+    It is ``XDG_STATE_HOME/linkwright`` or ``~/.local/state/linkwright``.
+    """
     return _folder("STATE")
 
 

@@ -1,6 +1,6 @@
 """Writing a file completely or not at all: on any failure, the existing file is unchanged.
 
-All commands write their files by this. It imports little, because short commands load it: neither pathlib nor secrets.
+All commands write their files with this module. It imports neither pathlib nor secrets, because short commands load it.
 """
 
 from __future__ import annotations
@@ -12,22 +12,23 @@ import stat
 NO_SPACE = frozenset({errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)})
 """A disk that is full, a quota or limit that is reached, a disk that is broken: writing in place would only destroy."""
 
-_LONGEST_NAME = 200  # bytes; a draft's name gets some more, and 255 are allowed
+_LONGEST_NAME = 200  # in bytes; the name of a draft is a little longer, and 255 are allowed
 
 
 def write_whole_file(path: str | os.PathLike[str], data: str | bytes, *, mode: int | None = None) -> None:
-    """Write a file beside the existing one, then replace that one; a link stays a link.
+    """Write a new file next to the existing one, then replace the latter.
 
-    If the folder does not allow that, or the file is a mount of its own, as Docker makes them, the file is written
-    in place; until that is done, a copy of its content is beside it or in the folder for temporary files.
+    A symbolic link stays a link. If the folder does not allow that, or the file is a mount of its own, as Docker
+    creates them, the file is written in place. Until that is finished, a copy of its content is next to it or in the
+    folder for temporary files.
 
     Args:
-        path: the file; its folder must exist. Devices and pipes are written to as they are.
+        path: the file; its folder must exist. Devices and pipes are written to directly.
         data: the new content; a text is written as UTF-8, with its own line ends.
-        mode: its permissions; by default its current ones, or the usual ones of a new file.
+        mode: the permissions; by default the existing file's, or the usual permissions of a new file.
 
     Raises:
-        OSError: it cannot be written; then its content is unchanged.
+        OSError: the file cannot be written; its content is unchanged.
     """
     content = data.encode("utf-8") if isinstance(data, str) else data
     target = os.path.realpath(os.fspath(path))
@@ -46,7 +47,7 @@ def write_whole_file(path: str | os.PathLike[str], data: str | bytes, *, mode: i
 
 
 def _permissions(path: str) -> int | None:
-    """The permissions of an existing file; None if there is none, or if it is not a file."""
+    """Return the permissions of an existing regular file, or None for anything else."""
     try:
         facts = os.stat(path)
     except OSError:
@@ -67,7 +68,10 @@ def _replace(target: str, content: bytes, mode: int | None) -> None:
 
 
 def _write_in_place(target: str, content: bytes) -> None:
-    """Write over a file; on failure its content is restored, or stays in the copy if that fails too."""
+    """Overwrite a file, and restore its content on failure.
+
+    If that fails, too, a copy of the content is kept.
+    """
     with open(target, "r+b", buffering=0) as file:
         before = file.readall()
         copy = _copy(target, before)
@@ -104,9 +108,9 @@ def _beside(target: str, what: str) -> str:
 
 
 def _create(path: str, content: bytes, mode: int = 0o666) -> None:
-    """Make a file that is on the disk when this returns, or not there when it fails.
+    """Create a file and flush it to the disk, or remove it if that fails.
 
-    `mode` is its permissions, less those that the process gives no file.
+    `mode` is its permissions, less the process's umask.
     """
     descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), mode)
     try:
@@ -134,7 +138,7 @@ def _write_all(descriptor: int, content: bytes) -> None:
 
 
 def _remove(path: str) -> None:
-    from contextlib import suppress  # which is slow to import, and seldom needed
+    from contextlib import suppress  # slow to import, and seldom needed
 
     with suppress(OSError):
         os.unlink(path)

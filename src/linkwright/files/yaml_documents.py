@@ -1,4 +1,7 @@
-"""YAML that a user wrote, as nodes that know their places, and one form for mistakes in it."""
+"""YAML that a user wrote, as nodes that record their places.
+
+Mistakes in it are reported in a uniform way.
+"""
 
 from __future__ import annotations
 
@@ -25,15 +28,15 @@ _DEEPEST = 50
 
 
 def read_source(path: Path, what: Phrase, code: str) -> SourceText:
-    """The text of a file that a user names.
+    """Return the text of a file that a user names.
 
     Args:
-        path: of the file.
+        path: the path of the file.
         what: the kind of file, for the error.
-        code: of the error.
+        code: the code of the error.
 
     Raises:
-        LinkwrightError: it does not exist, or cannot be read.
+        LinkwrightError: the file does not exist, or cannot be read.
     """
     shown = display_path(path)
     try:
@@ -48,17 +51,17 @@ def read_source(path: Path, what: Phrase, code: str) -> SourceText:
 
 
 class YamlDocument:
-    """One document.
+    """A YAML document.
 
     Args:
-        source: its text.
-        code: of the diagnostics about mistakes in it.
+        source: the text of the document.
+        code: the code of diagnostics about mistakes in it.
 
     Attributes:
-        root: its node; None in an empty text.
+        root: the root node; None for an empty text.
 
     Raises:
-        LinkwrightError: it is not YAML, or nested too deeply.
+        LinkwrightError: the text is not YAML, or nested too deeply.
     """
 
     def __init__(self, source: SourceText, code: str) -> None:
@@ -67,11 +70,11 @@ class YamlDocument:
         self.root: yaml.Node | None = self._composed()
 
     def error(self, message: Phrase, node: yaml.Node | None, hint: Phrase | None = None) -> LinkwrightError:
-        """The error for something at a node; None for the document."""
+        """Return an error with a message about a node, or about the document if the node is None."""
         return LinkwrightError(Diagnostic(self._code, message, self.span(node), hint=hint, source=self.source))
 
     def span(self, node: yaml.Node | None) -> Span:
-        """Where a node begins and ends."""
+        """Return the span of a node, or the beginning of the document if the node is None."""
         if node is None or node.start_mark is None or node.end_mark is None:
             return self.source.span(0, 0)
         start, end = node.start_mark, node.end_mark
