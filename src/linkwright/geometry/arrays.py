@@ -1,9 +1,9 @@
 """Rotations and poses in arrays, vectorised over leading axes, which broadcast.
 
-Everywhere a quaternion is x, y, z, w in the last axis, as in ROS messages, and of unit length unless said otherwise.
-A rotation is active: it turns vectors of the child frame into the parent frame. Roll, pitch and yaw are angles in
-radians about the fixed axes x, y, z in this order, R = Rz(yaw) Ry(pitch) Rx(roll) (REP 103). A pose is that
-of a child frame in its parent frame as a row x, y, z, qx, qy, qz, qw: metres and a unit quaternion.
+A quaternion is x, y, z, w in the last axis, as in ROS messages, and has unit length unless stated otherwise. A rotation
+is active: it rotates vectors of the child frame into the parent frame. Roll, pitch and yaw are angles in radians about
+the fixed axes x, y, z in this order, R = Rz(yaw) Ry(pitch) Rx(roll) (REP 103). A pose is the pose of a child frame in
+its parent frame, as a row x, y, z, qx, qy, qz, qw: metres and a unit quaternion.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ _PARALLEL = 0.9995
 
 
 def last_axis(values: ArrayLike, length: int, what: str) -> Array:
-    """Return the values as a float64 array, and check the length of its last axis.
+    """Return the values as a float64 array, after checking the length of the last axis.
 
     Raises:
-        ValueError: it has another length.
+        ValueError: the last axis has another length.
     """
     array = np.asarray(values, dtype=np.float64)
     if array.ndim == 0 or array.shape[-1] != length:
@@ -36,7 +36,7 @@ def last_axis(values: ArrayLike, length: int, what: str) -> Array:
 
 
 def quaternion_from_rpy(rpy: ArrayLike) -> Array:
-    """The rotation by roll, pitch and yaw.
+    """Return the rotation by roll, pitch and yaw as a quaternion.
 
     Args:
         rpy: shape (..., 3), radians.
@@ -86,11 +86,11 @@ def quaternion_inverse(quaternion: ArrayLike) -> Array:
 
 
 def rotate(quaternion: ArrayLike, vector: ArrayLike) -> Array:
-    """Vectors of the child frame in the parent frame.
+    """Rotate vectors from the child frame into the parent frame.
 
     Args:
         quaternion: shape (..., 4).
-        vector: shape (..., 3), broadcast against it.
+        vector: shape (..., 3), broadcast against `quaternion`.
 
     Returns:
         Shape (..., 3).
@@ -98,7 +98,7 @@ def rotate(quaternion: ArrayLike, vector: ArrayLike) -> Array:
     q, v = last_axis(quaternion, 4, "a quaternion"), last_axis(vector, 3, "a vector")
     x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
     vx, vy, vz = v[..., 0], v[..., 1], v[..., 2]
-    # v + 2 w (u x v) + 2 u x (u x v), with u the vector part.
+    # v + 2 w (u x v) + 2 u x (u x v), where u is the vector part
     tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
     rotated = np.empty((*np.broadcast_shapes(q.shape[:-1], v.shape[:-1]), 3))
     rotated[..., 0] = vx + w * tx + y * tz - z * ty
@@ -108,12 +108,12 @@ def rotate(quaternion: ArrayLike, vector: ArrayLike) -> Array:
 
 
 def slerp(first: ArrayLike, last: ArrayLike, ratios: ArrayLike) -> Array:
-    """Rotations on the shorter arc from one to another, at constant speed.
+    """Interpolate rotations at constant speed along the shorter arc between two rotations.
 
     Args:
-        first: where it begins, shape (4,).
-        last: where it ends, shape (4,).
-        ratios: of the way, 0 to 1, shape (n,).
+        first: the rotation at the start, shape (4,).
+        last: the rotation at the end, shape (4,).
+        ratios: fractions of the arc, 0 to 1, shape (n,).
 
     Returns:
         Shape (n, 4).
@@ -133,7 +133,7 @@ def slerp(first: ArrayLike, last: ArrayLike, ratios: ArrayLike) -> Array:
 
 
 def rotation_matrix(quaternion: ArrayLike) -> Array:
-    """The rotation as a matrix; shape (..., 4) to (..., 3, 3)."""
+    """Convert rotations to matrices; shape (..., 4) to (..., 3, 3)."""
     x, y, z, w = np.moveaxis(last_axis(quaternion, 4, "a quaternion"), -1, 0)
     matrix = np.empty((*x.shape, 3, 3))
     matrix[..., 0, 0] = 1 - 2 * (y * y + z * z)
@@ -149,12 +149,12 @@ def rotation_matrix(quaternion: ArrayLike) -> Array:
 
 
 def quaternion_from_matrix(matrix: ArrayLike) -> Array:
-    """The rotation of a rotation matrix, with w >= 0; shape (..., 3, 3) to (..., 4)."""
+    """Convert rotation matrices to quaternions with w >= 0; shape (..., 3, 3) to (..., 4)."""
     m = np.asarray(matrix, dtype=np.float64)
     if m.shape[-2:] != (3, 3):
         raise ValueError(f"a rotation matrix of shape {m.shape}; (..., 3, 3) is expected")
     xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
-    # The products of every two components, times four; the row with the largest square is the best conditioned one.
+    # four times the products of every two components; the row with the largest square is the best conditioned
     products = np.empty((*xx.shape, 4, 4))
     products[..., 0, 0] = 1 + xx - yy - zz
     products[..., 1, 1] = 1 - xx + yy - zz
@@ -174,11 +174,11 @@ def quaternion_from_matrix(matrix: ArrayLike) -> Array:
 
 
 def compose(b_in_a: ArrayLike, c_in_b: ArrayLike) -> Array:
-    """The poses of frame C in frame A.
+    """Return the poses of frame C in frame A.
 
     Args:
-        b_in_a: shape (..., 7).
-        c_in_b: shape (..., 7), broadcast against it.
+        b_in_a: poses of frame B in frame A, shape (..., 7).
+        c_in_b: poses of frame C in frame B, shape (..., 7), broadcast against `b_in_a`.
 
     Returns:
         Shape (..., 7).
@@ -191,19 +191,19 @@ def compose(b_in_a: ArrayLike, c_in_b: ArrayLike) -> Array:
 
 
 def invert(b_in_a: ArrayLike) -> Array:
-    """The poses of frame A in frame B; shape (..., 7) to (..., 7)."""
+    """Return the poses of frame A in frame B, given B in A; shape (..., 7) to (..., 7)."""
     given = last_axis(b_in_a, 7, "a pose")
     back = quaternion_inverse(given[..., 3:])
     return np.concatenate((-rotate(back, given[..., :3]), back), axis=-1)
 
 
 def row_from_pose(pose: Pose) -> Array:
-    """A pose of a description as a row; shape (7,)."""
+    """Convert a pose of a description to a row; shape (7,)."""
     return np.array((*pose.xyz, *quaternion_of(pose)))
 
 
 def matrix_from_pose(pose: ArrayLike) -> Array:
-    """Homogeneous matrices; shape (..., 7) to (..., 4, 4)."""
+    """Convert poses to homogeneous matrices; shape (..., 7) to (..., 4, 4)."""
     given = last_axis(pose, 7, "a pose")
     matrix = np.zeros((*given.shape[:-1], 4, 4))
     matrix[..., :3, :3] = rotation_matrix(given[..., 3:])

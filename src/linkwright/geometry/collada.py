@@ -1,4 +1,4 @@
-"""The numbers of COLLADA files by arrays."""
+"""The numbers in COLLADA files, read with arrays."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from linkwright.geometry.polyhedron import Faces
 
 
 def read_collada(data: bytes) -> ColladaFile[PlainMesh, Array] | None:
-    """The meshes that the scene of a file places; None as `read_scene` gives it."""
+    """Return the meshes in the scene of a file, or None in the same cases as `read_scene`."""
     return read_scene(data, Arrays())
 
 
 class Arrays:
-    """Meshes and matrices of numpy; shape (4, 4)."""
+    """Creates numpy meshes and matrices of shape (4, 4)."""
 
     def identity(self) -> Array:
-        """No transform."""
+        """Return the identity matrix."""
         return np.eye(4)
 
     def moved(self, matrix: Array, tag: str, text: str | None) -> Array:
-        """A matrix times that of a transform."""
+        """Return the product of a matrix and the matrix of a transform."""
         moved: Array = matrix @ _transform(tag, numbers(text, np.float32).astype(np.float64))
         return moved
 
     def faces(self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits) -> Faces:
-        """The triangles of an element."""
+        """Return the triangles of an element."""
         rows = [numbers(text, np.int64).reshape(-1, width) for text in texts]
         if tag == "triangles":
             counts: NDArray[np.int64] = np.full(len(rows[0]) // 3, 3, np.int64)
@@ -48,13 +48,16 @@ class Arrays:
         return fans(indices[:, column], counts)
 
     def mesh(self, text: str, faces: list[Faces]) -> PlainMesh:
-        """The mesh of the numbers of its corners and the triangles of its elements."""
+        """Return the mesh with the corners in a text and the triangles of all elements."""
         points = numbers(text, np.float32).reshape(-1, 3).astype(np.float64)
         return PlainMesh(points, np.concatenate([np.zeros((0, 3), dtype=np.int64), *faces]))
 
 
 def _transform(tag: str, values: Array) -> Array:
-    """The matrix of a transform; the axis of a rotation is taken as it is written, as pycollada does."""
+    """Return the matrix of a transform.
+
+    As in pycollada, the axis of a rotation is not normalised.
+    """
     matrix = np.eye(4)
     if tag == "matrix":
         return values.reshape(4, 4)

@@ -1,4 +1,7 @@
-"""The numbers of small COLLADA files in plain Python, with the rounding to 32 bits that pycollada does."""
+"""The numbers in small COLLADA files, read in plain Python.
+
+They are rounded to 32 bits, as in pycollada.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,10 @@ _Mesh = tuple[list[Vector3], list[_Triangle]]
 
 
 def read_triangles(data: bytes, most: int) -> _Mesh | None:
-    """The corners and triangles of a file's scene in m; None for more triangles, and as `read_scene` gives it."""
+    """Return the corners (in m) and triangles of a file's scene.
+
+    The result is None if there are more than `most` triangles, and in the same cases as for `read_scene`.
+    """
     file: ColladaFile[_Mesh, _Rows] | None = read_scene(data, Lists())
     if file is None or sum(len(faces) for (_, faces), _ in file.placed) > most:
         return None
@@ -35,21 +41,21 @@ def read_triangles(data: bytes, most: int) -> _Mesh | None:
 
 
 class Lists:
-    """Meshes as lists of corners and of triangles, matrices as lists of rows."""
+    """Creates meshes as lists of corners and triangles, and matrices as lists of rows."""
 
     def identity(self) -> _Rows:
-        """No transform."""
+        """Return the identity matrix."""
         return [[float(row == column) for column in range(4)] for row in range(4)]
 
     def moved(self, matrix: _Rows, tag: str, text: str | None) -> _Rows:
-        """A matrix times that of a transform."""
+        """Return the product of a matrix and the matrix of a transform."""
         columns = list(zip(*_transform(tag, _numbers(text or ""), self.identity()), strict=True))
         return [[sum(a * b for a, b in zip(row, column, strict=True)) for column in columns] for row in matrix]
 
     def faces(
         self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits
     ) -> list[_Triangle]:
-        """The triangles of an element."""
+        """Return the triangles of an element."""
         rows = [_integers(text) for text in texts]
         indices = [value for row in rows for value in row]
         counts = [len(row) // width for row in rows]
@@ -70,14 +76,14 @@ class Lists:
         return found
 
     def mesh(self, text: str, faces: list[list[_Triangle]]) -> _Mesh:
-        """The mesh of the numbers of its corners and the triangles of its elements."""
+        """Return the mesh with the corners in a text and the triangles of all elements."""
         numbers = _numbers(text)
         points = list(zip(numbers[::3], numbers[1::3], numbers[2::3], strict=True))
         return points, [item for part in faces for item in part]
 
 
 def _numbers(text: str) -> list[float]:
-    """The numbers of a text, of 32 bits each."""
+    """Return the numbers in a text, rounded to 32 bits."""
     if "_" in text:
         raise Unusual
     words = text.split()
@@ -97,7 +103,7 @@ def _integers(text: str) -> list[int]:
 
 
 def _transform(tag: str, values: list[float], matrix: _Rows) -> _Rows:
-    """The matrix of a transform, made of the identity."""
+    """Return the matrix of a transform, by changing the given identity matrix."""
     if tag == "matrix":
         if len(values) != 16:
             raise Unusual

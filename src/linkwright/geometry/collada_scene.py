@@ -1,7 +1,7 @@
-"""Reading the scene of usual COLLADA files: importing trimesh takes longer than reading most files.
+"""Reading of the scene of usual COLLADA files.
 
-This module reads the tree; numbers are read with arrays (`collada`) or, for small files, in plain Python
-(`collada_lists`).
+Importing trimesh takes longer than reading most of them. This module reads the XML tree. Numbers are read with arrays
+(`collada`) or, for small files, in plain Python (`collada_lists`).
 """
 
 from __future__ import annotations
@@ -33,28 +33,37 @@ MatrixT = TypeVar("MatrixT")
 
 
 class Unusual(Exception):  # noqa: N818 - no error: another reader takes the file
-    """A file has content that a plain reader does not support."""
+    """Raised when a file has content that a plain reader does not support."""
 
 
 class Numbers(Protocol[MadeT_co, MatrixT, FacesT]):
-    """Makes meshes and matrices from texts; each method raises `Unusual` or ValueError for unusual texts."""
+    """Creates meshes and matrices from texts.
+
+    Each method raises `Unusual` or ValueError for unusual texts.
+    """
 
     def identity(self) -> MatrixT:
-        """No transform."""
+        """Return the identity matrix."""
 
     def moved(self, matrix: MatrixT, tag: str, text: str | None) -> MatrixT:
-        """A matrix times that of a transform; the axis of a rotation is taken as it is written, as pycollada does."""
+        """Return the product of a matrix and the matrix of a transform.
+
+        The axis of a rotation is not normalised, as in pycollada.
+        """
 
     def faces(self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits) -> FacesT:
-        """The triangles of ``<triangles>``, ``<polylist>`` or ``<polygons>``; a polygon makes a fan."""
+        """Return the triangles of ``<triangles>``, ``<polylist>`` or ``<polygons>``.
+
+        A polygon becomes a fan.
+        """
 
     def mesh(self, text: str, faces: list[FacesT]) -> MadeT_co:
-        """The mesh of the numbers of its corners and the triangles of its elements."""
+        """Return the mesh with the corners in a text and the triangles of all elements."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Source:
-    """A ``<source>``: its number of rows, and its numbers as text."""
+    """The number of rows, the row width and the text of a ``<source>``."""
 
     rows: int
     width: int
@@ -65,8 +74,8 @@ class ColladaFile(Generic[MeshT, MatrixT]):
     """The meshes of a COLLADA file, in its own unit.
 
     Attributes:
-        unit: metres for each unit.
-        placed: each mesh with its frame in that of the file; shape (4, 4).
+        unit: metres per unit.
+        placed: each mesh with the matrix of its frame in the frame of the file; shape (4, 4).
     """
 
     def __init__(self, unit: float, placed: list[tuple[MeshT, MatrixT]]) -> None:
@@ -75,9 +84,10 @@ class ColladaFile(Generic[MeshT, MatrixT]):
 
 
 def read_scene(data: bytes, numbers: Numbers[MeshT, MatrixT, Any]) -> ColladaFile[MeshT, MatrixT] | None:
-    """The meshes that the scene of a file places, with the rounding to 32 bits that pycollada does.
+    """Return the meshes in the scene of a file.
 
-    None for a file with anything out of the ordinary, and for one with mistakes, which trimesh is to read.
+    Numbers are rounded to 32 bits, as in pycollada. The result is None for a file with unusual content or mistakes,
+    which is left to trimesh.
     """
     if _DECLARATION.search(data):
         return None
@@ -109,7 +119,7 @@ class _File(Generic[MeshT, MatrixT]):
             raise Unusual
         return ColladaFile(self._unit(), placed)
 
-    # --- the tree ---------------------------------------------------------------------------------------------
+    # --- tree -------------------------------------------------------------------------------------------------
 
     def _all(self, node: _Node, tag: str) -> list[_Node]:
         return node.findall(self._space + tag)
@@ -142,10 +152,10 @@ class _File(Generic[MeshT, MatrixT]):
                 return 1.0 if math.isclose(metres, 1.0, rel_tol=1e-5) else metres
         return 1.0
 
-    # --- the scene --------------------------------------------------------------------------------------------
+    # --- scene ------------------------------------------------------------------------------------------------
 
     def _placed(self, node: _Node, above: MatrixT) -> Iterator[tuple[MeshT, MatrixT]]:
-        """The meshes in a node, each with its frame in that of the file."""
+        """Yield the meshes in a node, each with the matrix of its frame in the frame of the file."""
         self._places += 1
         if self._places > _MOST_PLACES:
             raise Unusual
@@ -166,7 +176,7 @@ class _File(Generic[MeshT, MatrixT]):
             elif tag not in _TRANSFORMS and tag not in _WITHOUT_TRIANGLES:
                 raise Unusual
 
-    # --- the meshes -------------------------------------------------------------------------------------------
+    # --- meshes -----------------------------------------------------------------------------------------------
 
     def _mesh(self, name: str) -> tuple[MeshT, bool]:
         if name not in self._meshes:
@@ -174,7 +184,7 @@ class _File(Generic[MeshT, MatrixT]):
         return self._meshes[name]
 
     def _of_geometry(self, mesh: _Node) -> tuple[MeshT, bool]:
-        """A mesh, and whether it has triangles."""
+        """Return a mesh, and whether it has triangles."""
         sources = {f"#{element.get('id', '')}": self._source(element) for element in self._all(mesh, "source")}
         vertices = self._only(mesh, "vertices")
         inputs = {
@@ -201,7 +211,7 @@ class _File(Generic[MeshT, MatrixT]):
         return _Source(count // width, width, text)
 
     def _faces(self, part: _Node, tag: str, rows: dict[str, int], corners: str) -> Any:
-        """The triangles of ``<triangles>``, ``<polylist>`` or ``<polygons>``."""
+        """Return the triangles of ``<triangles>``, ``<polylist>`` or ``<polygons>``."""
         inputs = [
             (element.get("semantic"), element.get("source", ""), int(element.get("offset", "")))
             for element in self._all(part, "input")
@@ -218,7 +228,7 @@ class _File(Generic[MeshT, MatrixT]):
 
 
 def _reference(node: _Node) -> str:
-    """The id that a ``url`` in the same file names."""
+    """Return the ID to which a ``url`` refers in the same file."""
     mark, _, name = node.get("url", "").partition("#")
     if mark or not name:
         raise Unusual

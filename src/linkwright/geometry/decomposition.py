@@ -23,14 +23,15 @@ _MOST_CORNERS = 2000
 def convex_pieces(vertices: Array, faces: Faces, most: int) -> list[Array]:
     """Decompose a static surface into convex pieces.
 
-    A part that is nearly convex is one piece: its hull. Of another one each flat face, or where that is not convex
-    each triangle, is a plate that reaches `THICKNESS` inwards, so that rooms stay rooms and tables have legs. Where
-    that would be too many pieces, the parts with the most are their hulls.
+    A connected part that is nearly convex becomes one piece, its hull. Of any other part, each flat face becomes a
+    plate that extends `THICKNESS` inwards, or, if the face is not convex, each of its triangles does. Rooms thus stay
+    hollow, and tables keep their legs. If that would result in too many pieces, the parts with the most plates become
+    hulls.
 
     Args:
         vertices: corners in m, shape (vertices, 3).
         faces: indices of corners, shape (faces, 3), counterclockwise from outside.
-        most: how many pieces there may be.
+        most: the maximum number of pieces.
 
     Returns:
         The corners of each piece, shape (corners, 3).
@@ -59,7 +60,7 @@ def convex_pieces(vertices: Array, faces: Faces, most: int) -> list[Array]:
 
 
 def thickened(corners: Array) -> Array:
-    """Return corners, thickened by copies a little behind the surface if they are nearly coplanar."""
+    """Return the corners of a convex piece, thickened on both sides if they are nearly coplanar."""
     middle = corners.mean(axis=0)
     _, sizes, axes = np.linalg.svd(corners - middle, full_matrices=False)
     extent = np.ptp((corners - middle) @ axes[2]) if len(corners) > 2 and len(sizes) > 2 else 0.0
@@ -70,7 +71,7 @@ def thickened(corners: Array) -> Array:
 
 
 def _components(faces: Faces, count: int) -> list[NDArray[np.int64]]:
-    """Return the faces of each connected part, as indices of faces."""
+    """Return the indices of the faces in each connected part."""
     labels = _joined(faces, count)[faces[:, 0]]
     order = np.argsort(labels, kind="stable")
     starts = np.flatnonzero(np.diff(labels[order], prepend=-1))
@@ -78,7 +79,10 @@ def _components(faces: Faces, count: int) -> list[NDArray[np.int64]]:
 
 
 def _joined(groups: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """The least index in each set of indices that groups (rows) connect, for all indices below a count."""
+    """Return the minimum index that is connected to each index below a count.
+
+    Each row of `groups` connects its indices.
+    """
     labels = np.arange(count)
     while True:
         least = labels[groups].min(axis=1)
@@ -101,7 +105,7 @@ def _is_nearly_convex(vertices: Array, faces: Faces, corners: Array) -> bool:
 
 
 def _plates(vertices: Array, faces: Faces, most: int) -> list[Array]:
-    """A plate for each flat face, or one more than a limit."""
+    """Return a plate for each flat face; stop once there are more than `most`."""
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
@@ -127,7 +131,7 @@ def _plate(corners: Array, normal: Array) -> Array:
 
 
 def _flat_groups(faces: Faces, normals: Array) -> list[NDArray[np.int64]]:
-    """Return groups of coplanar triangles that share edges, as indices."""
+    """Return the indices of triangles in groups that are coplanar and connected by edges."""
     edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     owner = np.repeat(np.arange(len(faces)), 3)
     order = np.lexsort((edges[:, 1], edges[:, 0]))
@@ -141,7 +145,7 @@ def _flat_groups(faces: Faces, normals: Array) -> list[NDArray[np.int64]]:
 
 
 def _area_of_hull(points: Array, normal: Array) -> float:
-    """The area of the convex hull of points in one plane (Andrew's monotone chain)."""
+    """Return the area of the convex hull of coplanar points (Andrew's monotone chain)."""
     first = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
     first /= np.linalg.norm(first)
     plane = np.stack([points @ first, points @ np.cross(normal, first)], axis=1)

@@ -1,7 +1,7 @@
 """The convex hull of points in space, by the quickhull algorithm.
 
 Source: Barber, Dobkin, Huhdanpaa: *The Quickhull Algorithm for Convex Hulls*, ACM TOMS 22, 1996. It starts from a
-tetrahedron; while a face has points outside it, the farthest of them replaces the faces that it sees.
+tetrahedron. While a face has points outside it, the farthest of them replaces all faces that are visible from it.
 """
 
 from __future__ import annotations
@@ -43,8 +43,9 @@ class _Hull:
     """A hull under construction, from the first tetrahedron to the last face.
 
     Attributes:
-        edges: start and end of each directed edge -> its face. The edge in the other direction is a neighbour's.
-        outside: face -> the points outside it, each with one face only.
+        edges: start and end of each directed edge -> its face. The edge in the opposite direction belongs to a
+            neighbour.
+        outside: face -> the points outside it; each point is assigned to only one face.
     """
 
     def __init__(self, points: Array, start: tuple[int, int, int, int], near: float) -> None:
@@ -59,7 +60,7 @@ class _Hull:
         self._add([(a, b, c), (a, d, b), (b, d, c), (c, d, a)], np.arange(len(points), dtype=np.int64))
 
     def grown(self) -> Faces:
-        """Add points until none is outside."""
+        """Add points until none is outside, and return the faces."""
         while self.outside:
             face, candidates = self.outside.popitem()
             normal, level = self.planes[face]
@@ -75,7 +76,10 @@ class _Hull:
         self._add([(a, b, apex) for a, b in rim], left[left != apex])
 
     def _seen_from(self, face: int, point: Array) -> tuple[set[int], list[tuple[int, int]]]:
-        """The faces that a point sees, found from one of them, and the edges around them."""
+        """Return the faces that are visible from a point, and the edges around them.
+
+        The search starts from one of these faces.
+        """
         seen, hidden = {face}, set()
         waiting = [face]
         rim = []
@@ -102,7 +106,10 @@ class _Hull:
         return self.outside.pop(face, _NONE)
 
     def _add(self, triangles: list[Triangle], loose: Indices) -> None:
-        """Add faces, and give each loose point to the face that it is farthest outside of, if there is one."""
+        """Add faces, and assign the loose points to them.
+
+        A point is assigned to the face that it is farthest outside of, if there is one.
+        """
         corners = self.points[np.array(triangles, dtype=np.int64)]
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         lengths = np.linalg.norm(normals, axis=1, keepdims=True)
@@ -133,7 +140,10 @@ def _edges(triangle: Triangle) -> Iterable[tuple[int, int]]:
 
 
 def _tetrahedron(points: Array, near: float) -> tuple[int, int, int, int] | None:
-    """Return four points far apart, the fourth below the plane of the others, or None if all points are coplanar."""
+    """Return four points that are far apart, or None if all points are coplanar.
+
+    The fourth point is below the plane of the others.
+    """
     axis = int(np.ptp(points, axis=0).argmax())
     a, b = int(points[:, axis].argmin()), int(points[:, axis].argmax())
     along = (points[b] - points[a]) / np.linalg.norm(points[b] - points[a])

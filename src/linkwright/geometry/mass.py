@@ -1,4 +1,4 @@
-"""Mass, centre of mass and inertia tensor of a rigid body, and quantities that follow from them."""
+"""Mass, centre of mass and inertia tensor of a rigid body, and derived quantities."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ class PrincipalAxes:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MassProperties:
-    """Mass properties of a rigid body, in some frame, for links the link's.
+    """Mass properties of a rigid body in some frame, which is the link's frame for links.
 
     Attributes:
-        mass: in kg.
-        center: centre of mass in m; shape (3,).
+        mass: the mass in kg.
+        center: the centre of mass in m; shape (3,).
         inertia: inertia tensor about the centre of mass in kg m2, in the axes of the frame; shape (3, 3). Products of
-            inertia have the sign of the tensor's entries, as URDF and Gazebo take them: ``ixy = -integral(x y dm)``.
+            inertia have the sign of the tensor's entries, as in URDF and Gazebo: ``ixy = -integral(x y dm)``.
     """
 
     mass: float
@@ -45,11 +45,11 @@ class MassProperties:
     inertia: Array = field(default_factory=lambda: np.zeros((3, 3)))
 
     def times(self, factor: float) -> MassProperties:
-        """The same body with its density multiplied."""
+        """Return the same body with its density multiplied by a factor."""
         return MassProperties(self.mass * factor, self.center, self.inertia * factor)
 
     def with_mass(self, mass: float) -> MassProperties:
-        """The same body with the density that gives it this mass in kg.
+        """Return the same body with the density that results in a mass, in kg.
 
         Raises:
             ValueError: the body has no mass that could be multiplied.
@@ -59,28 +59,32 @@ class MassProperties:
         return self.times(mass / self.mass)
 
     def moved(self, pose: Pose) -> MassProperties:
-        """The same body seen from a parent frame, in which its own frame has this pose."""
+        """Return the mass properties in a parent frame, given the pose of the body's frame in it."""
         rotation = np.array(rotation_of(pose))
         center = rotation @ self.center + np.asarray(pose.xyz)
         return MassProperties(self.mass, center, rotation @ self.inertia @ rotation.T)
 
     def inertia_about(self, point: ArrayLike) -> Array:
-        """The tensor about another point of the frame, by the parallel axis theorem (Steiner); shape (3, 3)."""
+        """Return the inertia tensor about another point of the frame; shape (3, 3).
+
+        It is computed by the parallel axis theorem (Steiner).
+        """
         arm = self.center - np.asarray(point, dtype=np.float64)
         return self.inertia + self.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
 
     def principal(self) -> PrincipalAxes:
-        """The principal moments and axes."""
+        """Return the principal moments and axes."""
         moments, axes = np.linalg.eigh(self.inertia)
         if np.linalg.det(axes) < 0:
             axes[:, 0] = -axes[:, 0]
         return PrincipalAxes(moments, axes)
 
     def equivalent_box(self) -> Array | None:
-        """Edge lengths in m, along the principal axes, of the uniform box of this mass and these moments; shape (3,).
+        """Return the edge lengths of the uniform box with this mass and these principal moments.
 
-        A box of edges a, b, c has ``I1 = m (b2 + c2) / 12`` and so on, which is solved for the edges. None for a tensor
-        that no body can have, and without mass.
+        The lengths are in m, along the principal axes; shape (3,). A box with edges a, b, c has ``I1 = m (b2 + c2) /
+        12`` and so on, which is solved for the edges. The result is None for a body that has no mass, or for a tensor
+        that no body can have.
         """
         if not self.mass > LEAST_MASS:
             return None
@@ -93,7 +97,7 @@ class MassProperties:
 
 
 def combine(parts: Iterable[MassProperties]) -> MassProperties:
-    """Return the union of several bodies, all in one frame; where they overlap, their masses add up."""
+    """Return the union of several bodies in one frame; where they overlap, their masses add up."""
     bodies = list(parts)
     mass = sum(body.mass for body in bodies)
     if not mass > 0:

@@ -1,4 +1,4 @@
-"""Parsing mesh files: the one module that imports trimesh."""
+"""Parsing of mesh files; the only module that imports trimesh."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ _FACE_LINES = {".stl": b"facet normal", ".obj": b"\nf "}
 
 
 class PlacedMesh(NamedTuple):
-    """One instance of a mesh of a file.
+    """An instance of a mesh in a file.
 
     Attributes:
-        mesh: the `trimesh.Trimesh`, or a `PlainMesh` instead; it has triangles.
-        matrix: its frame in that of the file, homogeneous, in the file's unit; shape (4, 4).
+        mesh: a `trimesh.Trimesh` or a `PlainMesh`; it has triangles.
+        matrix: the homogeneous matrix of its frame in the frame of the file, in the file's unit; shape (4, 4).
         unit: metres per unit of the file.
         names: the names of the mesh and of the instance in the file.
     """
@@ -48,16 +48,19 @@ class PlacedMesh(NamedTuple):
 
     @property
     def faces(self) -> NDArray[np.int64]:
-        """Indices of corners, shape (faces, 3); turned round where the matrix mirrors, so that outside stays."""
+        """Indices of corners, shape (faces, 3).
+
+        Their order is reversed if the matrix mirrors, so that the outside stays outside.
+        """
         faces = np.asarray(self.mesh.faces, dtype=np.int64)
         return faces[:, ::-1] if np.linalg.det(self.matrix[:3, :3]) < 0 else faces
 
 
 class BadMeshError(Exception):
-    """A mesh file cannot be used; the text says why.
+    """Raised when a mesh file cannot be used; the text gives the reason.
 
     Attributes:
-        why: a phrase, in the words of the file.
+        why: the reason, a phrase in the terms of the file.
     """
 
     def __init__(self, why: Phrase) -> None:
@@ -68,18 +71,18 @@ class BadMeshError(Exception):
 def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: Any) -> list[PlacedMesh]:
     """Return the triangle meshes of an STL, COLLADA, OBJ or glTF file, without lines and points.
 
-    STL and OBJ have no unit; URDF takes their numbers as metres. The unit of COLLADA is returned, its up axis is not
-    applied, as in RViz.
+    STL and OBJ have no unit, and URDF takes their numbers as metres. As in RViz, the unit of COLLADA is returned, and
+    its up axis is not applied.
 
     Args:
-        data: the file.
-        kind: its extension, without the dot.
-        is_plain: whether to read only triangles: no colours, no normals, no names. Then most files are read without
-            trimesh, whose import takes longer.
+        data: the content of the file.
+        kind: the file extension, without the dot.
+        is_plain: whether to read only triangles, without colours, normals and names. In this case, most files are read
+            without trimesh, whose import takes longer.
         options: options of `trimesh.load_scene`.
 
     Raises:
-        BadMeshError: it cannot be read, has no triangles, or has malformed numbers.
+        BadMeshError: the file cannot be read, has no triangles, or has malformed numbers.
         ModuleNotFoundError: a library for the format is not installed.
     """
     try:
@@ -108,9 +111,10 @@ def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: 
 
 
 def declared_triangles(path: Path) -> int | None:
-    """The number of triangles that a file declares, without parsing it, which takes a minute for a large one.
+    """Return the number of triangles that a file declares, without parsing it.
 
-    At least as many are read from it. None for what only parsing tells (COLLADA, glTF), and for what cannot be read.
+    Parsing takes a minute for a large file. At least as many triangles are read from the file. The result is None if
+    only parsing can determine the number (COLLADA, glTF), and if the file cannot be read.
     """
     kind = path.suffix.lower()
     try:
@@ -127,7 +131,7 @@ def declared_triangles(path: Path) -> int | None:
 
 
 def _plain(data: bytes, kind: str) -> list[PlacedMesh] | None:
-    """The triangles of a usual STL, COLLADA or OBJ file."""
+    """Return the triangles of a usual STL, COLLADA or OBJ file, or None for any other."""
     nameless: frozenset[str] = frozenset()
     if kind == "dae":
         file = read_collada(data)
@@ -140,11 +144,11 @@ def _parsed(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
     if kind == "stl" and (stl := read_stl(data)) is not None:
         yield PlacedMesh(stl, np.eye(4), 1.0, frozenset((stl.name,)))
         return
-    import trimesh  # not above: it costs 0.1 s, and most robots are checked without a look into their meshes
+    import trimesh  # costs 0.1 s, and checks of most robots need no mesh
 
     logger = logging.getLogger("trimesh")
     if not logger.handlers:
-        logger.addHandler(logging.NullHandler())  # its warnings do not concern the user
+        logger.addHandler(logging.NullHandler())  # its warnings are of no use to the user
     scene: Any = _collada_scene(data, **options) if kind == "dae" else _scene(data, kind, **options)
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]
@@ -152,7 +156,7 @@ def _parsed(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
             unit = _collada_unit(mesh) if kind == "dae" else 1.0
             yield PlacedMesh(mesh, np.asarray(matrix, dtype=np.float64), unit, frozenset((name, node)))
-    scene.__dict__.clear()  # it holds itself in a circle, and with it the bytes of the file
+    scene.__dict__.clear()  # breaks the reference cycle that keeps the file's bytes in memory
 
 
 def _scene(data: bytes, kind: str, **options: Any) -> Any:
@@ -162,10 +166,10 @@ def _scene(data: bytes, kind: str, **options: Any) -> Any:
 
 
 def _collada_scene(data: bytes, **options: Any) -> Any:
-    """Return the scene of a COLLADA file; geometry with a material that cannot be read comes without a material.
+    """Return the scene of a COLLADA file, without the materials that cannot be read.
 
-    pycollada can skip broken materials, but also skips the geometry that uses them. So it reads strictly first, and a
-    file that it refuses is read again without those references.
+    pycollada can skip broken materials, but also skips the geometry that uses them. The first attempt is therefore
+    strict, and a file that it rejects is read again without the references to these materials.
     """
     from collada.common import DaeError  # type: ignore[import-untyped]  # pycollada has no types
 
@@ -176,9 +180,10 @@ def _collada_scene(data: bytes, **options: Any) -> Any:
 
 
 def _well_formed(data: bytes) -> bytes | None:
-    """Return a COLLADA file as XML if it has mistakes that Gazebo and RViz tolerate; None for others.
+    """Return a COLLADA file as well-formed XML, or None.
 
-    Exporters write such files: assimp names the nodes of an STL ``<STL_BINARY>``.
+    The result is None unless the file has mistakes that Gazebo and RViz tolerate. Exporters write such files: assimp
+    names the nodes of an STL ``<STL_BINARY>``.
     """
     try:
         document, forgiven = parse_as_tinyxml(decode(data, "<mesh>"), "<mesh>", foreign(""))
@@ -192,7 +197,7 @@ def _well_formed(data: bytes) -> bytes | None:
 
 
 def _without_broken_materials(data: bytes) -> bytes:
-    """Return a COLLADA file without its references to materials that are missing or cannot be read."""
+    """Return a COLLADA file without its references to missing or unreadable materials."""
     from collada import Collada  # type: ignore[import-untyped]  # pycollada has no types
     from collada.common import DaeError
 
@@ -208,7 +213,10 @@ def _without_broken_materials(data: bytes) -> bytes:
 
 
 def parser_fault(error: Exception) -> Phrase:
-    """Return the first line of a parser's error, if nothing better is known."""
+    """Return a phrase with the first line of a parser's error.
+
+    It is used if no better reason is known.
+    """
     if isinstance(error, FileNotFoundError):
         return phrase("the file '{name}' that it references does not exist", name=str(error.filename or error))
     lines = str(error).strip().splitlines()
@@ -216,7 +224,10 @@ def parser_fault(error: Exception) -> Phrase:
 
 
 def beside(path: str) -> Any:
-    """The resolver that gives the parser the files beside a mesh file; None for STL, which names none."""
+    """Return a resolver that gives the parser the files next to a mesh file.
+
+    It is None for STL, which names no files.
+    """
     if path.lower().endswith(".stl"):
         return None
     from trimesh.resolvers import FilePathResolver
@@ -225,6 +236,9 @@ def beside(path: str) -> Any:
 
 
 def _collada_unit(mesh: Any) -> float:
-    """Metres for each unit of a COLLADA file; trimesh notes them with its meshes and leaves the numbers as they are."""
+    """Return the metres per unit of a COLLADA file.
+
+    trimesh stores the unit with the meshes, and does not apply it to the numbers.
+    """
     words = str(mesh.metadata.get("units", "meters")).split(" * ")
     return float(words[0]) if len(words) == 2 else 1.0

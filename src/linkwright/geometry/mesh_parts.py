@@ -1,4 +1,7 @@
-"""Mesh files with their materials: triangles by material, by the rules of RViz, which the page follows too."""
+"""Mesh files with their materials, as triangles grouped by material.
+
+The rules are RViz's, which the page follows, too.
+"""
 
 from __future__ import annotations
 
@@ -18,13 +21,13 @@ from linkwright.loading.lean_typing import Any
 
 @dataclass(frozen=True, slots=True)
 class Triangles:
-    """A surface.
+    """A surface of triangles.
 
     Attributes:
         positions: the corners in m, shape (N, 3).
         indices: three per triangle, counterclockwise from outside; flat.
         normals: shape (N, 3), or None for flat triangles.
-        coordinates: texture coordinates from its upper left corner, shape (N, 2), or None.
+        coordinates: texture coordinates from the upper left corner of the texture, shape (N, 2), or None.
         colors: red, green, blue and alpha of each corner, 0 to 1, shape (N, 4), or None.
     """
 
@@ -44,11 +47,11 @@ _UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
 
 @dataclass(frozen=True, slots=True)
 class OwnLook:
-    """A material that came with the file.
+    """A material from the mesh file.
 
     Attributes:
-        color: red, green, blue as they are to be seen, 0 to 1.
-        image: its texture as PNG, or None.
+        color: red, green and blue as displayed, 0 to 1.
+        image: the texture as PNG, or None.
     """
 
     color: tuple[float, float, float]
@@ -57,12 +60,12 @@ class OwnLook:
 
 @dataclass(frozen=True, slots=True)
 class MeshPart:
-    """Triangles in the frame of the file.
+    """Triangles with one material, in the frame of the file.
 
     Attributes:
         triangles: the triangles.
-        own: their material; None where that of the description applies.
-        names: what the file calls them.
+        own: the material from the file; None if the material of the description applies.
+        names: the names of the part in the file.
     """
 
     triangles: Triangles
@@ -70,20 +73,20 @@ class MeshPart:
     names: frozenset[str] = frozenset()
 
     def moved(self, offset: Array) -> MeshPart:
-        """The part moved by an offset in m, shape (3,)."""
+        """Return the part moved by an offset in m, shape (3,)."""
         return replace(self, triangles=replace(self.triangles, positions=self.triangles.positions + offset))
 
 
 def read_parts(path: Path, *, resolver: Any) -> list[MeshPart]:
-    """The parts of an STL, COLLADA, OBJ or glTF file.
+    """Return the parts of an STL, COLLADA, OBJ or glTF file.
 
     Args:
-        path: of the file.
-        resolver: gives trimesh the files that it names, by ``get(name)``.
+        path: the path of the file.
+        resolver: provides the files that the mesh file names to trimesh, by ``get(name)``.
 
     Raises:
-        BadMeshError: it cannot be read; says why.
-        LinkwrightError: INR104 a library for it is not installed.
+        BadMeshError: the file cannot be read; the text gives the reason.
+        LinkwrightError: INR104, a library for the file is not installed.
     """
     kind = path.suffix.lower().removeprefix(".")
     try:
@@ -115,12 +118,15 @@ def _triangles(placed: PlacedMesh, matrix: Array, *, smooth: bool) -> Triangles:
     uv = getattr(mesh.visual, "uv", None)
     coordinates = None
     if uv is not None and np.shape(uv) == (len(positions), 2):
-        coordinates = np.asarray(uv, dtype=np.float64) * (1, -1) + (0, 1)  # trimesh counts from below
+        coordinates = np.asarray(uv, dtype=np.float64) * (1, -1) + (0, 1)  # trimesh counts from the bottom
     return Triangles(positions, faces.reshape(-1), normals, coordinates, _vertex_colors(mesh, len(positions)))
 
 
 def _normals(mesh: Any, positions: Array, faces: Any, matrix: Array) -> Array | None:
-    """The normals of the file, else those of the triangles, averaged at each corner."""
+    """Return the normals at the corners, or None if one of them is zero.
+
+    They are the normals in the file, or else averages of the triangles' normals.
+    """
     if "vertex_normals" in mesh._cache.cache and len(mesh.vertex_normals) == len(positions):
         normals = np.asarray(mesh.vertex_normals, dtype=np.float64) @ np.linalg.pinv(matrix[:3, :3])
     else:
@@ -147,7 +153,7 @@ def _own(mesh: Any, kind: str) -> OwnLook | None:
         return OwnLook((1.0, 1.0, 1.0)) if kind != "dae" else None
     material = getattr(mesh.visual, "material", None)
     if material is None:
-        return OwnLook((1.0, 1.0, 1.0)) if kind in ("glb", "gltf") else None  # glTF's default material is white
+        return OwnLook((1.0, 1.0, 1.0)) if kind in ("glb", "gltf") else None  # the default material of glTF is white
     if kind == "obj":
         color = material.kwargs.get("kd", np.asarray(material.diffuse[:3]) / 255.0)
         return OwnLook(_rgb(color), _png(getattr(material, "image", None)))
@@ -162,7 +168,7 @@ def _rgb(color: Any) -> tuple[float, float, float]:
 
 
 def read_png(path: Path) -> bytes | None:
-    """Return an image in a file as PNG; None if it is not an image, or Pillow is not installed."""
+    """Return the image in a file as PNG; None if it is not an image, or Pillow is not installed."""
     try:
         return _as_png(path.read_bytes())
     except (ModuleNotFoundError, OSError, ValueError, SyntaxError):
@@ -170,17 +176,20 @@ def read_png(path: Path) -> bytes | None:
 
 
 def _png(image: Any) -> bytes | None:
-    """An image as PNG; the bytes that it was read from where they are known and are one, for encoding is slow."""
+    """Return an image as PNG.
+
+    If it was read from PNG data, this data is returned, because encoding is slow.
+    """
     if image is None:
         return None
-    source = getattr(image, "fp", None)  # Pillow's, until the pixels are decoded
+    source = getattr(image, "fp", None)  # Pillow keeps it until the pixels are decoded
     return _as_png(source.getvalue()) if isinstance(source, BytesIO) else _encoded(image)
 
 
 @lru_cache(maxsize=8)
 def _as_png(data: bytes) -> bytes:
-    """An image file as PNG; kept for a while, as many meshes share one."""
-    from PIL import Image  # not above: an extra
+    """Return an image file as PNG; the results are cached, because many meshes share an image."""
+    from PIL import Image  # imported here, because it belongs to an extra
 
     image = Image.open(BytesIO(data))
     if image.format != "PNG":

@@ -1,4 +1,7 @@
-"""Reading mesh files: their triangles, in metres and in the frame that RViz shows them in."""
+"""Reading of the triangles in mesh files.
+
+They are in metres and in the frame in which RViz shows them.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +49,7 @@ class TriangleMesh:
 
     @cached_property
     def bounds(self) -> Bounds:
-        """The box around the triangles, in m."""
+        """The bounding box of the triangles, in m."""
         if not len(self.faces):
             return Bounds((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
         is_used = np.zeros(len(self.vertices), dtype=bool)
@@ -62,14 +65,15 @@ class TriangleMesh:
 
     @cached_property
     def is_watertight(self) -> bool:
-        """Whether the triangles bound a volume, without holes and all turned the same way."""
+        """Whether the triangles bound a volume, without holes and with consistent orientation."""
         return is_closed(self._merged[1])
 
     @cached_property
     def solid(self) -> MassProperties:
-        """Return mass properties for a density of 1 kg/m3: of the mesh if it is watertight, else of its convex hull.
+        """The mass properties for a density of 1 kg/m3.
 
-        The mass is 0 if all triangles are coplanar.
+        They are the mesh's if it is watertight, else those of its convex hull. The mass is 0 if all triangles are
+        coplanar.
         """
         vertices, faces = self._merged
         if self.is_watertight:
@@ -80,7 +84,10 @@ class TriangleMesh:
         return MassProperties(0.0) if hull is None else polyhedron_properties(vertices, hull)
 
     def scaled(self, scale: Vector3) -> TriangleMesh:
-        """The mesh scaled along its axes, as the ``scale`` of a URDF mesh does; a negative factor mirrors it."""
+        """Return the mesh scaled along its axes, as by the ``scale`` of a URDF mesh.
+
+        A negative factor mirrors it.
+        """
         if scale == (1.0, 1.0, 1.0):
             return self
         found = self._scaled.get(scale)
@@ -96,12 +103,13 @@ class TriangleMesh:
 def read_mesh(path: Path) -> TriangleMesh:
     """Return the triangles of an STL, COLLADA, OBJ or glTF file.
 
-    STL and OBJ have no unit; URDF takes their numbers as metres. The unit of COLLADA is applied, its up axis is not, as
-    in RViz. Materials and textures are not read, and of other files only the buffers of a glTF.
+    STL and OBJ have no unit, and URDF takes their numbers as metres. As in RViz, the unit of COLLADA is applied, and
+    its up axis is not. Materials and textures are not read, and the only other files that are read are the buffers of a
+    glTF file.
 
     Raises:
-        LinkwrightError: INR101 there is no such file, INR102 its extension is not known, INR103 it cannot be read,
-            INR104 trimesh is not installed.
+        LinkwrightError: INR101, there is no such file; INR102, its extension is not known; INR103, it cannot be read;
+            INR104, trimesh is not installed.
     """
     kind = path.suffix.lower()
     if kind not in MESH_ENDINGS:
@@ -151,12 +159,12 @@ def _parse(data: bytes, kind: str, path: Path) -> TriangleMesh:
         count += len(corners)
         parsed.append(placed.mesh)
     for mesh in parsed:
-        mesh.__dict__.clear()  # it holds itself in a circle: few objects that Python seldom looks for, and many bytes
+        mesh.__dict__.clear()  # breaks reference cycles, which hold much memory
     return TriangleMesh(np.concatenate(vertices), np.concatenate(faces))
 
 
 def unreadable(path: Path, why: str) -> LinkwrightError:
-    """The error for a mesh that cannot be used (INR103)."""
+    """Return the error for a mesh that cannot be used (INR103)."""
     hint = phrase("export it again, or leave the link out")
     return LinkwrightError(
         Diagnostic(

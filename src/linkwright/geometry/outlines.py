@@ -1,7 +1,7 @@
-"""The outlines of mesh files, for checks of descriptions. Those of small files need no numpy.
+"""The outlines of mesh files, for checks of descriptions.
 
-Importing numpy takes longer than the rest of a check of a robot with a small mesh. Large or unusual files are left to
-`linkwright.geometry.meshes`, which computes the same with arrays.
+Outlines of small files need no numpy. Importing numpy takes longer than the rest of the check of a robot with a small
+mesh. Large or unusual files are left to `linkwright.geometry.meshes`, which computes the same results with arrays.
 """
 
 from __future__ import annotations
@@ -37,30 +37,30 @@ _Triangle = tuple[int, int, int]
 
 
 class Outline(Protocol):
-    """The properties of a mesh that checks use."""
+    """The interface of the mesh properties that checks use."""
 
     @property
     def bounds(self) -> Bounds:
-        """The box around its triangles, in m."""
+        """The bounding box of the triangles, in m."""
 
     @property
     def count(self) -> int:
-        """The number of its triangles."""
+        """The number of triangles."""
 
     @property
     def is_watertight(self) -> bool:
-        """Whether its triangles bound a volume, without holes and all turned the same way."""
+        """Whether the triangles bound a volume, without holes and with consistent orientation."""
 
     def scaled(self, scale: Vector3) -> Outline:
-        """The outline of the mesh scaled along its axes."""
+        """Return the outline of the mesh scaled along its axes."""
 
 
 class SmallMesh:
     """The triangles of a mesh in plain Python.
 
     Args:
-        corners: in m.
-        faces: three indices of corners each.
+        corners: the corners in m.
+        faces: three indices of corners for each triangle.
     """
 
     def __init__(self, corners: list[Vector3], faces: list[_Triangle]) -> None:
@@ -75,12 +75,15 @@ class SmallMesh:
 
     @cached_property
     def bounds(self) -> Bounds:
-        """The box around the triangles, in m."""
+        """The bounding box of the triangles, in m."""
         return _around([self._corners[place] for place in set(chain.from_iterable(self._faces))])
 
     @cached_property
     def is_watertight(self) -> bool:
-        """Return whether each edge occurs equally often in both directions, after merging corners at one place."""
+        """Whether each edge occurs equally often in both directions.
+
+        Corners at the same position are merged first.
+        """
         box = _around(self._corners)
         size = max(box.size)
         if not size > POINT:
@@ -99,7 +102,7 @@ class SmallMesh:
         return bool(edges) and all(edges[end, start] == count for (start, end), count in edges.items())
 
     def scaled(self, scale: Vector3) -> SmallMesh:
-        """The mesh scaled along its axes."""
+        """Return the mesh scaled along its axes."""
         if scale == (1.0, 1.0, 1.0):
             return self
         found = self._scaled.get(scale)
@@ -114,8 +117,8 @@ def read_small(data: bytes, kind: str) -> SmallMesh | None:
     """Return the triangles of a usual STL, OBJ or COLLADA file, or None for any other.
 
     Args:
-        data: the file.
-        kind: its extension, without the dot.
+        data: the content of the file.
+        kind: the file extension, without the dot.
     """
     try:
         if kind == "stl":
@@ -147,7 +150,7 @@ def _text_stl(data: bytes) -> SmallMesh | None:
 
 
 def _of_corners(numbers: list[float]) -> SmallMesh | None:
-    """The mesh of triangles, each with three corners of its own."""
+    """Return the mesh of triangles that share no corners."""
     count = len(numbers) // 9
     places = range(3 * count)
     return _mesh(_points(numbers), list(zip(places[::3], places[1::3], places[2::3], strict=True)))
@@ -155,7 +158,7 @@ def _of_corners(numbers: list[float]) -> SmallMesh | None:
 
 def _obj(data: bytes) -> SmallMesh | None:
     if b"\\" in data:
-        return None  # a line may continue on the next one
+        return None  # a backslash may continue a line on the next one
     lines = data.splitlines()
     rows = [line[2:].split() for line in lines if line.startswith(b"v ")]
     polygons = [line[2:].split() for line in lines if line.startswith(b"f ")]
@@ -173,7 +176,7 @@ def _obj(data: bytes) -> SmallMesh | None:
 
 
 def _collada(data: bytes) -> SmallMesh | None:
-    from linkwright.geometry.collada_lists import read_triangles  # here: it imports a parser of XML
+    from linkwright.geometry.collada_lists import read_triangles  # imported here, because it imports an XML parser
 
     found = read_triangles(data.strip(COLLADA_PADDING), _MOST_TRIANGLES)
     return None if found is None else _mesh(*found)

@@ -1,4 +1,4 @@
-"""Triangles without colours, and the numbers in text files that make them."""
+"""Triangles without colours, and the parsing of the numbers in text files."""
 
 from __future__ import annotations
 
@@ -14,13 +14,15 @@ from linkwright.loading.lean_typing import Any
 
 
 class PlainMesh:
-    """The triangles of a file, with the part of the interface of `trimesh.Trimesh` that is used here.
+    """The triangles of a file.
+
+    The class has the part of the interface of `trimesh.Trimesh` that is used here.
 
     Attributes:
         vertices: corners, shape (n, 3), in the file's unit.
-        faces: the numbers of three corners each, shape (m, 3).
-        name: what the file calls it.
-        visual: of no kind, as there are no colours.
+        faces: three indices of corners for each triangle, shape (m, 3).
+        name: the name in the file.
+        visual: an object whose ``kind`` is None, because there are no colours.
     """
 
     def __init__(self, vertices: Array, faces: Faces, name: str = "") -> None:
@@ -31,13 +33,13 @@ class PlainMesh:
 
 
 def numbers(text: str | None, kind: type[Any]) -> Any:
-    """The numbers in a text with blanks between them, as an array of a kind.
+    """Parse numbers separated by blanks, and return them as an array of a type.
 
     Raises:
-        Unusual: there is anything else in it, or a number that is not finite.
+        Unusual: the text contains anything else, or a number that is not finite.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("error", DeprecationWarning)  # numpy's warning about words that are not numbers
+        warnings.simplefilter("error", DeprecationWarning)  # numpy warns about words that are not numbers
         try:
             found = np.fromstring((text or "").strip(), dtype=kind, sep=" ")
         except (DeprecationWarning, ValueError):
@@ -48,11 +50,13 @@ def numbers(text: str | None, kind: type[Any]) -> Any:
 
 
 def fans(corners: Faces, counts: Faces) -> Faces:
-    """Triangles of polygons: from the first corner of each to every two neighbours that follow.
+    """Split polygons into triangles.
+
+    Each triangle joins the first corner and two neighbouring other corners.
 
     Args:
-        corners: those of all polygons, one behind another.
-        counts: how many each has, 3 or more.
+        corners: the corners of all polygons, one polygon after another.
+        counts: the number of corners of each polygon, 3 or more.
     """
     ends = np.cumsum(counts)
     firsts = np.repeat(ends - counts, counts - 2)

@@ -1,4 +1,4 @@
-"""Polygons in a plane: triangulation, and points inside."""
+"""Polygons in a plane: triangulation, and the test whether points are inside."""
 
 from __future__ import annotations
 
@@ -14,13 +14,15 @@ Point = tuple[float, float]
 
 
 def triangulated(points: Sequence[Point]) -> list[tuple[int, int, int]]:
-    """The triangles of a simple polygon, by cutting off ears (Meisters, *Polygons have ears*, 1975).
+    """Return the triangles of a simple polygon, by ear clipping.
+
+    Source: Meisters, *Polygons have ears*, 1975.
 
     Args:
-        points: its corners, either way round; the last is joined to the first, which may be repeated at the end.
+        points: the corners in either direction; the last is joined to the first, which may be repeated at the end.
 
     Returns:
-        Indices of corners, counterclockwise. Of a polygon that crosses itself, what could be cut off.
+        Indices of corners, counterclockwise. For a polygon that crosses itself, the triangles that could be cut off.
     """
     ring = [index for index, point in enumerate(points) if point != points[index - 1]]
     if _twice_area(points, ring) < 0:
@@ -43,16 +45,18 @@ def triangulated(points: Sequence[Point]) -> list[tuple[int, int, int]]:
 
 
 def within_polygon(points: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return which points are inside a polygon, by the number of its edges that a ray crosses (even-odd rule).
+    """Return which points are inside a polygon.
+
+    The even-odd rule counts the edges that a ray from the point crosses.
 
     Args:
-        points: of shape (..., 2).
-        corners: of shape (corners, 2), in the same frame; the last is joined to the first.
+        points: shape (..., 2).
+        corners: shape (corners, 2), in the same frame; the last is joined to the first.
 
     Returns:
-        Of shape (...).
+        Shape (...).
     """
-    import numpy as np  # readers of descriptions, which take polygons apart, are free of it
+    import numpy as np  # imported here, because readers of descriptions triangulate polygons without numpy
 
     x, y = points[..., 0], points[..., 1]
     inside = np.zeros(x.shape, np.bool_)
@@ -70,7 +74,7 @@ def _twice_area(points: Sequence[Point], ring: Sequence[int]) -> float:
 
 
 def turn(a: Point, b: Point, c: Point) -> float:
-    """Twice the area of a triangle, positive where its corners go round counterclockwise."""
+    """Return twice the area of a triangle, positive if its corners are counterclockwise."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 

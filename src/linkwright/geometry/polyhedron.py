@@ -1,4 +1,4 @@
-"""Mass properties of the space inside a closed surface of triangles, and whether a surface is closed."""
+"""Mass properties inside a closed surface of triangles, and the test whether it is closed."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ Faces = NDArray[np.int64]
 
 
 def polyhedron_properties(vertices: Array, faces: Faces) -> MassProperties:
-    """Mass properties of the solid of density 1 that a closed surface bounds.
+    """Return the mass properties of the solid of density 1 that a closed surface bounds.
 
     Each triangle spans a tetrahedron with a common point. With ``det = a . (b x c)`` and ``s = a + b + c``, its signed
-    volume is ``det / 6``, its first moment ``det / 24 s`` and its second moment ``det / 120 (ss' + aa' + bb' + cc')``;
-    the parts outside the solid cancel. Source: Blow, Binstock: *How to find the inertia tensor (or other mass
+    volume is ``det / 6``, its first moment ``det / 24 s`` and its second moment ``det / 120 (ss' + aa' + bb' + cc')``.
+    The parts outside the solid cancel. Source: Blow, Binstock: *How to find the inertia tensor (or other mass
     properties) of a 3D solid body represented by a triangle mesh*, 2004.
 
     Args:
-        vertices: in m, shape (vertices, 3).
-        faces: indices of corners, shape (faces, 3); it does not matter whether they turn outwards or inwards.
+        vertices: corners in m, shape (vertices, 3).
+        faces: indices of corners, shape (faces, 3), oriented either outwards or inwards.
 
     Returns:
-        In the frame of the vertices; without mass when the surface bounds no volume.
+        The mass properties in the frame of the vertices; without mass if the surface bounds no volume.
     """
     if not len(faces):
         return MassProperties(0.0)
-    shift = (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0  # near the solid, so that less cancels
+    shift = (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0  # near the solid, to reduce cancellation
     corners = (vertices - shift)[faces]
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     det = np.einsum("ij,ij->i", a, np.cross(b, c))
@@ -50,9 +50,9 @@ def polyhedron_properties(vertices: Array, faces: Faces) -> MassProperties:
 
 
 def merged(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
-    """Return the mesh with corners at one place merged, and without triangles that lose their area by it.
+    """Merge corners at the same position, and remove the triangles that lose their area.
 
-    STL has no shared corners at all, and other formats split them where normals or textures differ.
+    STL has no shared corners at all, and other formats split corners where normals or textures differ.
     """
     if not len(faces):
         return vertices, faces
@@ -69,10 +69,11 @@ def merged(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
 
 
 def is_closed(faces: Faces) -> bool:
-    """Return whether triangles with shared corners bound a volume: every edge is run through as often there as back.
+    """Return whether triangles with shared corners bound a volume.
 
-    That is just what the divergence theorem asks for. It holds for several bodies in one mesh, and where more than two
-    triangles meet at an edge; it does not where there is a hole, or where neighbours turn opposite ways.
+    They do if every edge occurs equally often in both directions. This is exactly the condition of the divergence
+    theorem. It holds for several bodies in one mesh, and where more than two triangles meet at an edge. It does not
+    hold if there is a hole, or if neighbours have opposite orientations.
     """
     if not len(faces):
         return False

@@ -1,9 +1,7 @@
-"""The simple shapes that descriptions are made of: their volumes and their bounds; lengths in metres.
+"""The simple shapes in descriptions, and frames as rotation matrix and position.
 
-A frame in another one as a rotation matrix and a position, in plain floats.
-
-Rotations are matrices as three rows, from the child frame to the parent frame; lengths are metres. For few frames this
-is quicker than arrays, and it needs no numpy.
+Rotations are matrices as three rows, from the child frame to the parent frame; lengths are metres. All numbers are
+plain floats: for few frames, this is faster than arrays, and it needs no numpy.
 """
 
 from __future__ import annotations
@@ -17,14 +15,14 @@ from linkwright.loading.lean_dataclasses import NamedTuple, dataclass
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """Edge lengths along x, y, z in metres, centred at the origin."""
+    """A box with edge lengths along x, y, z in metres, centred at the origin."""
 
     size: Vector3
 
 
 @dataclass(frozen=True, slots=True)
 class Cylinder:
-    """Along z, centred at the origin; metres."""
+    """A cylinder along z, centred at the origin; lengths in metres."""
 
     radius: float
     length: float
@@ -32,7 +30,10 @@ class Cylinder:
 
 @dataclass(frozen=True, slots=True)
 class Capsule:
-    """Along z, centred at the origin; `length` is that of the cylindrical part, in metres (URDF 1.1)."""
+    """A capsule along z, centred at the origin (URDF 1.1).
+
+    Lengths are in metres, and `length` is the length of the cylindrical part.
+    """
 
     radius: float
     length: float
@@ -40,7 +41,7 @@ class Capsule:
 
 @dataclass(frozen=True, slots=True)
 class Sphere:
-    """Centred at the origin; metres."""
+    """A sphere, centred at the origin; lengths in metres."""
 
     radius: float
 
@@ -53,7 +54,7 @@ def volume_of(shape: SimpleShape) -> float:
     if isinstance(shape, Box):
         return prod(shape.size) if min(shape.size) > 0 else 0.0
     r = max(shape.radius, 0.0)
-    ball = 4 / 3 * pi * (r * r * r)  # a power of a large number would raise
+    ball = 4 / 3 * pi * (r * r * r)  # r ** 3 would raise OverflowError for a large number
     if isinstance(shape, Sphere):
         return ball
     if isinstance(shape, Capsule):
@@ -67,46 +68,46 @@ IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 class Placement(NamedTuple):
-    """A frame in another one."""
+    """The rotation and position of an inner frame in an outer frame."""
 
     rotation: Matrix
     position: Vector3
 
     def point(self, inner: Vector3) -> Vector3:
-        """A point of the inner frame, in the outer one."""
+        """Transform a point from the inner frame to the outer frame."""
         x, y, z = turned(self.rotation, inner)
         return x + self.position[0], y + self.position[1], z + self.position[2]
 
     def inside(self, outer: Placement) -> Placement:
-        """This frame in the outer frame of `outer`, given this one in its inner frame."""
+        """Return this frame, given in the inner frame of `outer`, in the outer frame of `outer`."""
         return Placement(product(outer.rotation, self.rotation), outer.point(self.position))
 
     def seen_from(self, other: Placement) -> Placement:
-        """This frame in the other one, both given in the same frame."""
+        """Return this frame in another frame, where both are given in the same frame."""
         back = transposed(other.rotation)
         difference = subtracted(self.position, other.position)
         return Placement(product(back, self.rotation), turned(back, difference))
 
 
 def placement(pose: Pose) -> Placement:
-    """Convert a pose."""
+    """Convert a pose to a rotation matrix and a position."""
     return Placement(rotation(pose), pose.xyz)
 
 
 def rotation(pose: Pose) -> Matrix:
-    """The rotation of a pose."""
+    """Return the rotation matrix of a pose."""
     return rotation_matrix(quaternion_of(pose))
 
 
 def product(first: Matrix, second: Matrix) -> Matrix:
-    """The second rotation followed by the first."""
+    """Return the matrix product, which is the second rotation followed by the first."""
     columns = transposed(second)
     rows = [tuple(dot(row, column) for column in columns) for row in first]
     return (_vector(rows[0]), _vector(rows[1]), _vector(rows[2]))
 
 
 def transposed(matrix: Matrix) -> Matrix:
-    """The inverse of a rotation."""
+    """Return the transpose of a matrix, which is the inverse of a rotation."""
     return (
         (matrix[0][0], matrix[1][0], matrix[2][0]),
         (matrix[0][1], matrix[1][1], matrix[2][1]),
@@ -115,12 +116,12 @@ def transposed(matrix: Matrix) -> Matrix:
 
 
 def turned(matrix: Matrix, vector: Vector3) -> Vector3:
-    """A rotated vector."""
+    """Return a vector rotated by a matrix."""
     return dot(matrix[0], vector), dot(matrix[1], vector), dot(matrix[2], vector)
 
 
 def angle_between(first: Matrix, second: Matrix) -> float:
-    """The angle in radians by which two rotations differ."""
+    """Return the angle in radians by which two rotations differ."""
     trace = sum(dot(row, other) for row, other in zip(first, second, strict=True))
     return acos(max(-1.0, min(1.0, (trace - 1.0) / 2.0)))
 
@@ -134,24 +135,24 @@ FARTHEST = 1e9
 
 
 class Bounds(NamedTuple):
-    """A box along the axes of some frame: its lowest and highest corner in m."""
+    """A box along the axes of a frame, given by its minimum and maximum corners in m."""
 
     low: Vector3
     high: Vector3
 
     @property
     def size(self) -> Vector3:
-        """The edges in m."""
+        """The edge lengths in m."""
         return subtracted(self.high, self.low)
 
     @property
     def center(self) -> Vector3:
-        """The middle in m."""
+        """The centre in m."""
         return scaled(added(self.low, self.high), 0.5)
 
     @property
     def diagonal(self) -> float:
-        """The distance of opposite corners in m."""
+        """The distance between opposite corners in m."""
         return hypot(*self.size)
 
     def gap(self, other: Bounds) -> float:
@@ -160,16 +161,19 @@ class Bounds(NamedTuple):
         return hypot(*(max(0.0, before, after) for before, after in zip(*between, strict=True)))
 
     def nearest(self, point: Vector3) -> Vector3:
-        """The point of the box that is nearest to another."""
+        """Return the point of the box that is nearest to a point."""
         x, y, z = (min(max(part, low), high) for part, low, high in zip(point, self.low, self.high, strict=True))
         return x, y, z
 
     def distance(self, point: Vector3) -> float:
-        """Return the distance of a point from the box, in m; 0 inside."""
+        """Return the distance between a point and the box, in m; 0 inside the box."""
         return self.gap(Bounds(point, point))
 
     def moved(self, frame: Placement) -> Bounds:
-        """The box around this one in a parent frame, in which `frame` is that of this box."""
+        """Return the bounding box of this box in a parent frame.
+
+        `frame` is the placement of this box's frame in it.
+        """
         low, high = [], []
         for row, start in zip(frame.rotation, frame.position, strict=True):
             ends = [(a * factor, b * factor) for factor, a, b in zip(row, self.low, self.high, strict=True)]
@@ -179,7 +183,7 @@ class Bounds(NamedTuple):
 
 
 def bounds_of(shape: SimpleShape) -> Bounds:
-    """The box around a shape along its own axes."""
+    """Return the bounding box of a shape along its own axes."""
     if isinstance(shape, Box):
         x, y, z = (abs(edge) / 2.0 for edge in shape.size)
     elif isinstance(shape, Sphere):
@@ -191,7 +195,7 @@ def bounds_of(shape: SimpleShape) -> Bounds:
 
 
 def union(boxes: Iterable[Bounds]) -> Bounds | None:
-    """Return the box around several boxes, or None if there are none."""
+    """Return the bounding box of several boxes, or None if there are none."""
     listed = list(boxes)
     if len(listed) < 2:
         return listed[0] if listed else None

@@ -1,7 +1,7 @@
 """Single poses, rotations and vectors, as tuples of plain floats.
 
-Quaternions are x, y, z, w; lengths are metres and angles radians. Functions are named as those for many in
-`linkwright.geometry.arrays`; this module keeps readers of descriptions free of numpy.
+Quaternions are x, y, z, w; lengths are metres and angles radians. The functions have the same names as the functions
+for arrays in `linkwright.geometry.arrays`. This module lets readers of descriptions work without numpy.
 """
 
 from __future__ import annotations
@@ -14,33 +14,33 @@ Vector3 = tuple[float, float, float]
 
 
 def added(first: Vector3, second: Vector3) -> Vector3:
-    """The sum."""
+    """Return the sum of two vectors."""
     return first[0] + second[0], first[1] + second[1], first[2] + second[2]
 
 
 def subtracted(first: Vector3, second: Vector3) -> Vector3:
-    """The first vector less the second."""
+    """Return the first vector minus the second."""
     return first[0] - second[0], first[1] - second[1], first[2] - second[2]
 
 
 def scaled(vector: Vector3, factor: float) -> Vector3:
-    """The vector times a factor."""
+    """Return a vector multiplied by a factor."""
     return vector[0] * factor, vector[1] * factor, vector[2] * factor
 
 
 def dot(first: Vector3, second: Vector3) -> float:
-    """The scalar product."""
+    """Return the dot product of two vectors."""
     return first[0] * second[0] + first[1] * second[1] + first[2] * second[2]
 
 
 def cross(first: Vector3, second: Vector3) -> Vector3:
-    """The vector product."""
+    """Return the cross product of two vectors."""
     (a, b, c), (x, y, z) = first, second
     return b * z - c * y, c * x - a * z, a * y - b * x
 
 
 def length(vector: Vector3) -> float:
-    """The Euclidean length."""
+    """Return the Euclidean length of a vector."""
     return sqrt(dot(vector, vector))
 
 
@@ -57,12 +57,12 @@ _GIMBAL_LOCK = 0.99999
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """A child frame in its parent frame, as descriptions write it.
+    """The pose of a child frame in its parent frame, as descriptions write it.
 
     Attributes:
         xyz: translation in metres.
         rpy: roll, pitch, yaw in radians about the fixed axes x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll) (REP 103).
-        quaternion: set only where the file gave ``quat_xyzw`` (URDF 1.1); then `rpy` is derived from it.
+        quaternion: set only if the file has ``quat_xyzw`` (URDF 1.1), in which case `rpy` is derived from it.
     """
 
     xyz: Vector3 = (0.0, 0.0, 0.0)
@@ -74,12 +74,15 @@ IDENTITY_POSE = Pose()
 
 
 def quaternion_of(pose: Pose) -> Quaternion:
-    """The rotation of a pose, from the child's axes to the parent's."""
+    """Return the rotation of a pose, from the child's axes to the parent's axes."""
     return pose.quaternion or quaternion_from_rpy(pose.rpy)
 
 
 def quaternion_from_rpy(rpy: Vector3) -> Quaternion:
-    """The rotation Rz(yaw) Ry(pitch) Rx(roll), to the last bit as urdfdom computes it."""
+    """Return the rotation Rz(yaw) Ry(pitch) Rx(roll).
+
+    The result is identical to urdfdom's to the last bit.
+    """
     roll, pitch, yaw = (angle / 2.0 for angle in rpy)
     sin_roll, cos_roll = sin(roll), cos(roll)
     sin_pitch, cos_pitch = sin(pitch), cos(pitch)
@@ -93,7 +96,10 @@ def quaternion_from_rpy(rpy: Vector3) -> Quaternion:
 
 
 def rpy_from_quaternion(quaternion: Quaternion) -> Vector3:
-    """Roll, pitch, yaw as urdfdom gives them; within 0.26 degrees of pitch = +-90 degrees roll is 0."""
+    """Return roll, pitch and yaw as urdfdom computes them.
+
+    Roll is 0 within 0.26 degrees of a pitch of +-90 degrees.
+    """
     x, y, z, w = quaternion
     sin_pitch = -2 * (x * z - w * y)
     if sin_pitch <= -_GIMBAL_LOCK:
@@ -107,7 +113,10 @@ def rpy_from_quaternion(quaternion: Quaternion) -> Vector3:
 
 
 def normalized(x: float, y: float, z: float, w: float, *, least: float = 0.0) -> Quaternion:
-    """Return a quaternion with length 1: the identity if the squared length is 0, or less than `least`."""
+    """Scale a quaternion to length 1.
+
+    The result is the identity if the squared length is 0, or less than `least`.
+    """
     squared = x * x + y * y + z * z + w * w
     if squared == 0.0 or squared < least:
         return 0.0, 0.0, 0.0, 1.0
@@ -116,9 +125,12 @@ def normalized(x: float, y: float, z: float, w: float, *, least: float = 0.0) ->
 
 
 def axis_and_angle(quaternion: Quaternion) -> tuple[Vector3, float]:
-    """Return the axis, of length 1, and the angle from 0 to 2 pi of a rotation; x for the identity."""
+    """Return the unit axis and the angle (0 to 2 pi) of a rotation.
+
+    The axis of the identity is x.
+    """
     x, y, z, w = quaternion
-    norm = sqrt(x * x + y * y + z * z)  # not by 1 - w², which has few digits left for a small angle
+    norm = sqrt(x * x + y * y + z * z)  # 1 - w² would have few significant digits for a small angle
     angle = 2.0 * atan2(norm, w)
     if norm < 1e-6:
         return (1.0, 0.0, 0.0), angle
@@ -126,7 +138,10 @@ def axis_and_angle(quaternion: Quaternion) -> tuple[Vector3, float]:
 
 
 def rotation_from_z(axis: Vector3) -> Quaternion:
-    """Return the shortest rotation that turns z to an axis of any length; about x for the opposite direction."""
+    """Return the shortest rotation that turns z to an axis of any length.
+
+    For the direction opposite to z, it is a rotation about x.
+    """
     x, y, z = axis
     norm = sqrt(x * x + y * y + z * z)
     if norm == 0.0:
@@ -139,10 +154,10 @@ def rotation_from_z(axis: Vector3) -> Quaternion:
 
 
 def rotate(quaternion: Quaternion, vector: Vector3) -> Vector3:
-    """A vector of the child frame in the parent frame."""
+    """Rotate a vector from the child frame into the parent frame."""
     qx, qy, qz, qw = quaternion
     x, y, z = vector
-    # v + 2 w (u x v) + 2 u x (u x v), with u the vector part
+    # v + 2 w (u x v) + 2 u x (u x v), where u is the vector part
     tx, ty, tz = 2.0 * (qy * z - qz * y), 2.0 * (qz * x - qx * z), 2.0 * (qx * y - qy * x)
     return (
         x + qw * tx + qy * tz - qz * ty,
@@ -152,7 +167,7 @@ def rotate(quaternion: Quaternion, vector: Vector3) -> Vector3:
 
 
 def rotation_matrix(quaternion: Quaternion) -> tuple[Vector3, Vector3, Vector3]:
-    """The rotation as the rows of a matrix."""
+    """Convert a rotation to the rows of a matrix."""
     x, y, z, w = quaternion
     return (
         (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
@@ -162,7 +177,7 @@ def rotation_matrix(quaternion: Quaternion) -> tuple[Vector3, Vector3, Vector3]:
 
 
 def quaternion_multiply(first: Quaternion, second: Quaternion) -> Quaternion:
-    """The rotation that applies `second`, then `first`: the product first * second."""
+    """Return the rotation that applies `second`, then `first`: the product first * second."""
     ax, ay, az, aw = first
     bx, by, bz, bw = second
     return (
@@ -174,26 +189,29 @@ def quaternion_multiply(first: Quaternion, second: Quaternion) -> Quaternion:
 
 
 def quaternion_inverse(quaternion: Quaternion) -> Quaternion:
-    """The rotation back."""
+    """Return the inverse rotation."""
     x, y, z, w = quaternion
     return -x, -y, -z, w
 
 
 def compose(b_in_a: Transform, c_in_b: Transform) -> Transform:
-    """The pose of frame C in frame A."""
+    """Return the pose of frame C in frame A."""
     x, y, z = rotate(b_in_a[3:], c_in_b[:3])
     return (b_in_a[0] + x, b_in_a[1] + y, b_in_a[2] + z, *quaternion_multiply(b_in_a[3:], c_in_b[3:]))
 
 
 def invert(b_in_a: Transform) -> Transform:
-    """The pose of frame A in frame B."""
+    """Return the pose of frame A in frame B."""
     x, y, z, qx, qy, qz, qw = b_in_a
-    inverse = (-qx, -qy, -qz, qw)  # not by a call: lookups of transforms count
+    inverse = (-qx, -qy, -qz, qw)  # inlined, because lookups of transforms must be fast
     return (*rotate(inverse, (-x, -y, -z)), *inverse)
 
 
 def interpolate(first: Transform, second: Transform, ratio: float) -> Transform:
-    """The pose part of the way from one to another: positions on a line, rotations on the shorter arc, as in tf2."""
+    """Interpolate between two poses, as in tf2.
+
+    Positions are on a line, rotations on the shorter arc.
+    """
     rest = 1.0 - ratio
     x, y, z = (rest * a + ratio * b for a, b in zip(first[:3], second[:3], strict=True))
     return (x, y, z, *_slerp(first[3:], second[3:], ratio))

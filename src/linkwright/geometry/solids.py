@@ -1,7 +1,7 @@
 """Mass properties of the simple shapes, in closed form.
 
-The formulae are those of any table of moments of inertia of homogeneous bodies, for instance Beer, Johnston: *Vector
-Mechanics for Engineers: Dynamics*, inside back cover. All are about the centre of mass and the shape's own axes.
+The formulae are those in any table of moments of inertia of homogeneous bodies, for instance Beer, Johnston: *Vector
+Mechanics for Engineers: Dynamics*, inside back cover. All refer to the centre of mass and the shape's own axes.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from linkwright.geometry.shapes import Box, Capsule, Cylinder, SimpleShape, Sphe
 
 
 def shape_properties(shape: SimpleShape, density: float = 1.0) -> MassProperties:
-    """Mass properties of a solid shape of uniform density, in its own frame.
+    """Return the mass properties of a solid shape of uniform density, in its own frame.
 
     Args:
-        shape: its lengths in m; a size of zero or less gives a body without mass.
-        density: in kg/m3; with 1 the mass is the volume in m3.
+        shape: the shape, with lengths in m; a size of zero or less results in a body without mass.
+        density: the density in kg/m3; with 1, the mass is the volume in m3.
     """
     if isinstance(shape, Box):
         return _box(shape, density)
@@ -31,7 +31,7 @@ def shape_properties(shape: SimpleShape, density: float = 1.0) -> MassProperties
 
 
 def _box(box: Box, density: float) -> MassProperties:
-    """``m = rho a b c``; ``Ixx = m (b2 + c2) / 12`` and so on."""
+    """Return ``m = rho a b c``; ``Ixx = m (b2 + c2) / 12`` and so on."""
     if min(box.size) <= 0:
         return MassProperties(0.0)
     a, b, c = box.size
@@ -40,7 +40,7 @@ def _box(box: Box, density: float) -> MassProperties:
 
 
 def _cylinder(cylinder: Cylinder, density: float) -> MassProperties:
-    """``m = rho pi r2 l``; ``Ixx = Iyy = m (3 r2 + l2) / 12``; ``Izz = m r2 / 2``."""
+    """Return ``m = rho pi r2 l``; ``Ixx = Iyy = m (3 r2 + l2) / 12``; ``Izz = m r2 / 2``."""
     r, length = cylinder.radius, cylinder.length
     if min(r, length) <= 0:
         return MassProperties(0.0)
@@ -50,7 +50,7 @@ def _cylinder(cylinder: Cylinder, density: float) -> MassProperties:
 
 
 def _sphere(sphere: Sphere, density: float) -> MassProperties:
-    """``m = rho 4/3 pi r3``; ``I = 2/5 m r2`` about every axis."""
+    """Return ``m = rho 4/3 pi r3``; ``I = 2/5 m r2`` about every axis."""
     r = sphere.radius
     if r <= 0:
         return MassProperties(0.0)
@@ -60,10 +60,10 @@ def _sphere(sphere: Sphere, density: float) -> MassProperties:
 
 
 def _capsule(capsule: Capsule, density: float) -> MassProperties:
-    """A cylinder and the two halves of a sphere.
+    """Return the mass properties of a cylinder with a half sphere on each end.
 
-    A half sphere has its centre of mass 3/8 r above its flat side and ``83/320 m r2`` about it, across its axis; moved
-    to the middle of the capsule that makes ``2/5 r2 + l2/4 + 3/8 l r`` for each unit of its mass.
+    A half sphere has its centre of mass 3/8 r above its flat side and the moment ``83/320 m r2`` about this centre,
+    across its axis. Moved to the centre of the capsule, that becomes ``2/5 r2 + l2/4 + 3/8 l r`` per unit of mass.
     """
     r, length = capsule.radius, capsule.length
     if r <= 0 or length < 0:

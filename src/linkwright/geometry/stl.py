@@ -1,4 +1,7 @@
-"""Reading the usual STL files, without colours: importing trimesh takes longer than reading most."""
+"""Reading of the usual STL files, without colours.
+
+Importing trimesh takes longer than reading most of them.
+"""
 
 from __future__ import annotations
 
@@ -17,11 +20,13 @@ _WORDS = [place for place, word in enumerate(FACET) if word != b"?"]
 
 
 def read_stl(data: bytes, *, is_plain: bool = False) -> PlainMesh | None:
-    """The triangles of an STL file; None for one with several solids or mistakes, which trimesh is to read.
+    """Return the triangles of an STL file.
+
+    The result is None for a file with several solids or mistakes, which is left to trimesh.
 
     Args:
-        data: the file.
-        is_plain: whether its colours do not matter. Where they do, a file with colours gives None, too.
+        data: the content of the file.
+        is_plain: whether to ignore its colours; otherwise the result is None for a file with colours, too.
     """
     return _binary(data, is_plain=is_plain) or _text(data)
 
@@ -55,6 +60,6 @@ def _text(data: bytes) -> PlainMesh | None:
 
 
 def _mesh(corners: Array, name: str) -> PlainMesh:
-    """The mesh of triangles, each with three corners of its own."""
+    """Return the mesh of triangles that share no corners."""
     vertices = corners.reshape(-1, 3)
     return PlainMesh(vertices, np.arange(len(vertices)).reshape(-1, 3), name)

@@ -1,8 +1,9 @@
-"""Whether an inertia tensor, a mass and a shape can belong to one body.
+"""Checks whether an inertia tensor, a mass and a shape can belong to one body.
 
 A rigid body's tensor is symmetric and positive definite, and its principal moments obey the triangle inequality: none
-is larger than the sum of the other two, for ``I1 + I2 - I3 = 2 integral(z2 dm) >= 0``. Source: Traversaro, Brossette,
-Escande, Nori: *Identification of fully physical consistent inertial parameters using optimization on manifolds*, 2016.
+is larger than the sum of the other two, because ``I1 + I2 - I3 = 2 integral(z2 dm) >= 0``. Source: Traversaro,
+Brossette, Escande, Nori: *Identification of fully physical consistent inertial parameters using optimization on
+manifolds*, 2016.
 """
 
 from __future__ import annotations
@@ -40,16 +41,16 @@ _MOST_SWEEPS = 30
 
 
 def largest_entry(tensor: Array | Matrix) -> float:
-    """The largest absolute value in a tensor; 0 where an entry is not finite."""
+    """Return the largest absolute value in a tensor; 0 if an entry is not finite."""
     entries = [abs(float(entry)) for entry in chain.from_iterable(tensor)]
     return max(entries) if all(map(isfinite, entries)) else 0.0
 
 
 def relative_moments(tensor: Array | Matrix) -> Vector3:
-    """The principal moments in units of the tensor's largest entry, smallest first. Nothing overflows.
+    """Return the principal moments relative to the tensor's largest entry, smallest first.
 
-    By Jacobi's rotations, each of which makes one product zero; for a single tensor that is quicker than by arrays,
-    and checks of descriptions do without numpy.
+    No step overflows. They are computed by Jacobi rotations, each of which makes one product zero. For a single tensor,
+    this is faster than arrays, and it keeps checks of descriptions free of numpy.
     """
     largest = largest_entry(tensor)
     if not largest > 0:
@@ -65,7 +66,7 @@ def relative_moments(tensor: Array | Matrix) -> Vector3:
 
 
 def _rotate(rows: list[list[float]], p: int, q: int, other: int) -> None:
-    """Turn a symmetric matrix so that its entry (p, q) is zero."""
+    """Rotate a symmetric matrix in place so that its entry (p, q) becomes zero."""
     product = rows[p][q]
     if abs(product) < _CONVERGED:
         return
@@ -82,17 +83,17 @@ def _rotate(rows: list[list[float]], p: int, q: int, other: int) -> None:
 
 
 def is_positive_definite(tensor: Array | Matrix) -> bool:
-    """Return whether every principal moment is positive; `tensor` is symmetric, of shape (3, 3)."""
+    """Return whether all principal moments are positive; `tensor` is symmetric, of shape (3, 3)."""
     return relative_moments(tensor)[0] > 0
 
 
 def is_indefinite(tensor: Array | Matrix, rounding: float = 0.0) -> bool:
-    """Return whether a principal moment is negative by more than rounding of a zero can explain.
+    """Return whether a principal moment is more negative than a rounded zero can be.
 
     Args:
-        tensor: in kg m2; shape (3, 3).
-        rounding: how far a principal moment may be off because the file has few digits, in kg m2; no more than
-            `TOLERANCE` of the largest entry counts.
+        tensor: the inertia tensor in kg m2; shape (3, 3).
+        rounding: the error of a principal moment that the file's few digits can cause, in kg m2; at most `TOLERANCE` of
+            the largest entry is used.
     """
     largest = largest_entry(tensor)
     allowed = max(ROUNDING * largest, min(rounding, TOLERANCE * largest))
@@ -100,19 +101,20 @@ def is_indefinite(tensor: Array | Matrix, rounding: float = 0.0) -> bool:
 
 
 def triangle_excess(tensor: Array | Matrix) -> float:
-    """By how much the largest principal moment is more than the sum of the others, as a part of it.
+    """Return by how much the largest principal moment exceeds the sum of the others.
 
-    0 or less for a body that can be; 0 for a flat one. The tensor's axes do not matter.
+    The excess is a fraction of the largest moment. The result is 0 or less for a possible body, and 0 for a flat one.
+    The tensor's axes do not matter.
     """
     small, middle, large = relative_moments(tensor)
     return (large - small - middle) / large if large > 0 else 0.0
 
 
 def excessive_products(tensor: Array | Matrix) -> list[tuple[str, float]]:
-    """Return products of inertia larger than the moments on the diagonal allow, with the largest allowed.
+    """Return the products of inertia that are too large for the diagonal moments.
 
-    ``ab <= (a2 + b2) / 2`` under the integral gives ``|Ixy| <= Izz / 2`` and so on, and a positive definite tensor has
-    ``Ixy2 < Ixx Iyy``.
+    ``ab <= (a2 + b2) / 2`` under the integral results in ``|Ixy| <= Izz / 2`` and so on, and a positive definite tensor
+    has ``Ixy2 < Ixx Iyy``.
 
     Returns:
         Pairs of name (``ixy``, ``ixz``, ``iyz``) and limit in kg m2.
@@ -129,22 +131,22 @@ def excessive_products(tensor: Array | Matrix) -> list[tuple[str, float]]:
 
 
 def largest_moment_within(center: Vector3, box: Bounds, mass: float) -> float:
-    """The largest moment about a centre of mass that a body inside a box can have, in kg m2.
+    """Return an upper bound for the moment about its centre of mass of a body in a box.
 
-    A body's points are nowhere farther than the farthest corner, and a moment about an axis through the centre of mass
-    is at most that of the whole mass at the farthest distance.
+    The result is in kg m2. No point of the body is farther away than the farthest corner, and a moment about an axis
+    through the centre of mass is at most the moment of the entire mass at that distance.
 
     Args:
         center: the centre of mass in m.
         box: the box, in m.
-        mass: in kg.
+        mass: the mass in kg.
     """
     ends = zip(center, box.low, box.high, strict=True)
     return mass * sum(max(abs(low - middle), abs(high - middle)) ** 2 for middle, low, high in ends)
 
 
 def problems(properties: MassProperties) -> list[Phrase]:
-    """Return why mass properties cannot be those of a body, in words; empty for valid ones."""
+    """Return why mass properties cannot belong to a body, in words; empty for valid ones."""
     found = []
     if not properties.mass > 0:
         found.append(phrase("the mass is not positive"))
