@@ -1,4 +1,7 @@
-"""Launch descriptions: actions, substitutions, conditions and events, and the engine that runs them."""
+"""Launch descriptions and the engine that runs them.
+
+Descriptions consist of actions, substitutions, conditions and events.
+"""
 
 from linkwright.hosting.plans import is_viewer
 from linkwright.launch.program import find_program, run_viewer

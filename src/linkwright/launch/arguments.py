@@ -25,10 +25,12 @@ UNDECLARED = frozenset({"launch-prefix", "sigterm_timeout", "sigkill_timeout", "
 
 
 def parse_arguments(words: Iterable[str]) -> dict[str, str]:
-    """Parse arguments into names and values; of several with the same name, the last counts.
+    """Parse launch arguments into a mapping of names to values.
+
+    The last value of a repeated name wins.
 
     Raises:
-        LinkwrightError: LAUNCH111, with all arguments that are not of the form ``name:=value``.
+        LinkwrightError: LAUNCH111, listing all arguments that are not of the form ``name:=value``.
     """
     return parse_assignments(words, _malformed)
 
@@ -41,10 +43,10 @@ def check_arguments(description: LaunchDescription, given: Mapping[str, str]) ->
     """Check the arguments against the declarations of the launch file, before anything starts.
 
     Returns:
-        Warnings (LAUNCH113) about undeclared arguments; as in ROS, they are set nevertheless.
+        Warnings (LAUNCH113) about undeclared arguments. As in ROS, these arguments are still set.
 
     Raises:
-        LinkwrightError: LAUNCH112 and LAUNCH114, all invalid values and missing arguments together.
+        LinkwrightError: LAUNCH112 and LAUNCH114, listing all invalid values and all missing arguments.
     """
     declared = description.get_launch_arguments()
     names = [argument.name for argument in declared]
@@ -74,7 +76,10 @@ def _error_of(argument: DeclareLaunchArgument, given: Mapping[str, str]) -> Sequ
 
 
 def _misspelt(name: str, undeclared: Sequence[str], error: Diagnostic) -> Diagnostic:
-    """Return the error for a missing argument; its hint names a given argument with a similar name."""
+    """Return the error for a missing argument.
+
+    Its hint names a given argument with a similar name.
+    """
     near = nearest(name, undeclared, limit=1)
     return (
         error.but(hint=phrase("'{near}' is given; did you mean '{name}'?", near=near[0], name=name)) if near else error
@@ -94,7 +99,10 @@ def _undeclared(name: str, declared: Sequence[str]) -> Diagnostic:
 
 
 def argument_listing(description: LaunchDescription) -> str:
-    """Return the output of ``ros2 launch --show-args``: names, descriptions and defaults of the arguments."""
+    """Return the output of ``ros2 launch --show-args``.
+
+    It has the names, descriptions and defaults of the arguments.
+    """
     lines = ["Arguments (pass arguments as '<name>:=<value>'):"]
     declared = description.get_launch_arguments()
     for argument in declared:

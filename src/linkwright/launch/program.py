@@ -1,4 +1,4 @@
-"""Run one executable of a package, without a launch file."""
+"""Runs a single executable of a package, without a launch file."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class Program:
     """An executable that is ready to run.
 
     Attributes:
-        command: its words.
-        environment: the environment it needs.
+        command: the words of the command line.
+        environment: the environment that the executable needs.
         is_ours: whether it is a node that comes with Linkwright.
     """
 
@@ -35,7 +35,7 @@ class Program:
 
 
 def find_program(finder: PackageFinder, package: str, executable: str) -> Program:
-    """Find an executable.
+    """Find an executable of a package, and return it ready to run.
 
     Raises:
         LinkwrightError: LAUNCH131, there is no such package or executable.
@@ -50,7 +50,7 @@ def run_viewer(arguments: Sequence[str], options: LaunchOptions | None = None) -
 
     Args:
         arguments: the command line of ``rviz2``.
-        options: the options of its page.
+        options: the options of the viewer's page.
 
     Returns:
         The exit status, see `linkwright.launch.run_launch`.

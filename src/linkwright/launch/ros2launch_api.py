@@ -18,10 +18,10 @@ from linkwright.packages.launch_files import is_launch_file_name
 
 
 class MultipleLaunchFilesError(Exception):
-    """Several files of a package have the same name.
+    """Raised when a package has several files with the same name.
 
     Attributes:
-        paths: the files.
+        paths: the paths of the files.
     """
 
     def __init__(self, msg: str, paths: Sequence[str]) -> None:
@@ -30,12 +30,12 @@ class MultipleLaunchFilesError(Exception):
 
 
 def get_share_file_path_from_package(*, package_name: str, file_name: str) -> str:
-    """Return the path of a file anywhere in the share folder of a package.
+    """Return the path of a file, which may be anywhere below the share folder of a package.
 
     Raises:
         PackageNotFoundError: PKG101, there is no such package.
-        FileNotFoundError: it has no such file.
-        MultipleLaunchFilesError: it has several.
+        FileNotFoundError: the package has no such file.
+        MultipleLaunchFilesError: the package has several files with this name.
     """
     share = current_finder().share(package_name)
     found = [str(Path(folder, file_name)) for folder, _, files in os.walk(share) if file_name in files]
@@ -49,21 +49,21 @@ def get_share_file_path_from_package(*, package_name: str, file_name: str) -> st
 
 
 def get_launch_file_paths(*, path: str) -> list[str]:
-    """Return the launch files in a folder and below."""
+    """Return the paths of the launch files in a folder and its subfolders."""
     inside = (str(Path(folder, name)) for folder, _, files in os.walk(path) for name in files)
     return [candidate for candidate in inside if is_launch_file(candidate)]
 
 
 def is_launch_file(path: str) -> bool:
-    """Return whether a path is that of a launch file."""
+    """Return whether a path is the path of a launch file."""
     return is_launch_file_name(str(path)) and Path(path).is_file()
 
 
 def parse_launch_arguments(launch_arguments: Sequence[str]) -> list[tuple[str, str]]:
-    """Parse arguments ``name:=value``; of several with the same name, the last counts.
+    """Parse arguments ``name:=value`` into pairs; the last value of a repeated name wins.
 
     Raises:
-        RuntimeError: one is malformed.
+        RuntimeError: an argument is malformed.
     """
     parsed: dict[str, str] = {}
     for argument in launch_arguments:
@@ -93,7 +93,7 @@ def launch_a_launch_file(
     debug: bool = False,
     **_: Any,
 ) -> int:
-    """Launch a file with arguments, to its end.
+    """Launch a file with arguments, and wait for the launch to end.
 
     Returns:
         0, or 1 if something in the launch failed.

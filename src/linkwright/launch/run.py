@@ -1,4 +1,4 @@
-"""Run a launch from the command line to its end."""
+"""Runs a launch from the command line until it ends."""
 
 from __future__ import annotations
 
@@ -30,19 +30,19 @@ class LaunchOptions:
     """The options of a launch.
 
     Attributes:
-        host: the address that the viewer's server binds to.
-        port: its port; None for the default, or the next free one.
+        host: the address to which the viewer's server binds.
+        port: the port of the viewer's server; None for the default or the next free port.
         open_browser: whether to open the page in the user's browser.
         isolate: whether Linkwright's own nodes run in separate processes.
-        debug: whether to log in detail.
+        debug: whether to log details.
         noninteractive: whether there is no terminal, which would also send signals to the processes.
         prefix: a prefix for the command lines of processes.
-        prefix_filter: a regular expression for the names of the programs that get it.
-        foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
+        prefix_filter: a regular expression for the names of the programs that get the prefix.
+        foxglove: a port for Foxglove and Lichtblick to connect to; None to open no port.
         skip_missing: whether to skip parts whose package, program or file is missing.
-        command_to_skip_missing: the command that does so, for the hint about missing parts.
+        command_to_skip_missing: the command that launches with `skip_missing`, for the hint about missing parts.
         network: whether the nodes of this process join the ROS 2 network, where other programs see them.
-        history: bytes of memory for the viewer's history of the last minutes; 0 for none.
+        history: the memory in bytes for the viewer's history of the last minutes; 0 for no history.
     """
 
     host: str = "127.0.0.1"
@@ -61,12 +61,12 @@ class LaunchOptions:
 
     @property
     def configurations(self) -> dict[str, str]:
-        """Return the launch configurations of these options."""
+        """The launch configurations that these options set."""
         given = {"launch-prefix": self.prefix, "launch-prefix-filter": self.prefix_filter}
         return {name: value for name, value in given.items() if value is not None}
 
     def for_session(self, title: str) -> SessionOptions:
-        """Return the options of the session."""
+        """Return the options of the launch session."""
         return SessionOptions(
             self.host,
             self.port,
@@ -93,7 +93,7 @@ def run_launch(
         options: the options of the launch.
 
     Returns:
-        The exit status: 0, 1 if something in the launch failed, 128 and the signal's number after a signal.
+        The exit status: 0, 1 if something in the launch failed, or 128 plus the signal's number after a signal.
 
     Raises:
         LinkwrightError: the errors in the target, the launch file or the arguments.
@@ -141,7 +141,10 @@ def print_description(target: LaunchTarget) -> str:
 
 
 def _read(target: LaunchTarget, describe: Callable[[LaunchDescription], str]) -> str:
-    """Read a launch file without running it, and return a text about its description."""
+    """Read a launch file without running it, and describe its description.
+
+    Return the result of `describe`.
+    """
     finder = target.finder()
     with own_environment(finder):
         return describe(load_launch_file(target.resolve(finder)))
@@ -154,7 +157,7 @@ def run_description(
     options: LaunchOptions,
     title: str,
 ) -> int:
-    """Run a description; `load` returns it with its initial locals.
+    """Run a launch description, which `load` returns with its initial locals.
 
     Returns:
         The exit status, see `run_launch`.
@@ -194,7 +197,7 @@ async def _run(
 
 
 def _foxglove_bridge(port: int) -> Action:
-    """Return the node that Foxglove and Lichtblick connect to."""
+    """Return the action that starts the node to which Foxglove and Lichtblick connect."""
     from linkwright.launch.ros import Node
 
     package = executable = "foxglove_bridge"

@@ -1,4 +1,4 @@
-"""The launch file to run: a path, or a package and the name of a file in it."""
+"""The launch file to run, given by a path, or by a package and the name of a file in it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class LaunchTarget:
     """A launch file as the user names it.
 
     Attributes:
-        file: the path, or with a package the name of the file or its path below the package's share folder.
+        file: the path; with a package, the name of the file or its path below the package's share folder.
         package: the package, or None.
     """
 
@@ -26,7 +26,10 @@ class LaunchTarget:
     package: str | None = None
 
     def finder(self) -> PackageFinder:
-        """Return the package finder of this launch, which starts at the file's folder and the current folder."""
+        """Return the package finder of the launch.
+
+        It starts at the file's folder and the current folder.
+        """
         if self.package is None:
             return PackageFinder(start=[Path(self.file).absolute().parent, Path.cwd()])
         return PackageFinder()
@@ -35,7 +38,7 @@ class LaunchTarget:
         """Return the absolute path of the launch file.
 
         Raises:
-            LinkwrightError: PKG101, an unknown package; LAUNCH101, the package has no such file, or several.
+            LinkwrightError: PKG101, the package is unknown; LAUNCH101, the package has no such file, or several.
         """
         if self.package is None:
             return Path(self.file).absolute()
@@ -79,11 +82,11 @@ def parse_launch_words(words: Sequence[str]) -> tuple[LaunchTarget, dict[str, st
     """Parse the words of ``launch PACKAGE FILE [name:=value ...]`` or ``launch PATH [name:=value ...]``.
 
     Raises:
-        LinkwrightError: LAUNCH110, no launch file is named; LAUNCH111, malformed arguments.
+        LinkwrightError: LAUNCH110, no launch file is named; LAUNCH111, arguments are malformed.
     """
     split = next((index for index, word in enumerate(words) if ":=" in word), len(words))
     split = min(split, 2)
-    if split == 2 and _is_file(words[0]):  # a path, followed by a word that should be an argument
+    if split == 2 and _is_file(words[0]):  # a path, followed by a word that was probably meant as an argument
         split = 1
     named, rest = words[:split], words[split:]
     arguments = parse_arguments(rest)

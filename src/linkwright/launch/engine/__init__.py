@@ -1,1 +1,4 @@
-"""The engine that runs a launch description: session, processes, nodes of this process, signals, live reload."""
+"""The engine that runs a launch description.
+
+It has the session, processes, in-process nodes, signals and live reload.
+"""

@@ -1,7 +1,8 @@
-"""The guardian, which ends the processes of a killed launcher.
+"""The guardian, which ends the processes of a launcher that was killed.
 
-A launcher that is killed with SIGKILL cannot end its processes. So a small program is started with the first process:
-    it holds the other end of a pipe, knows the process groups, and ends them if the pipe closes without notice.
+A launcher that is killed with SIGKILL cannot end its processes. A small helper program is therefore started together
+with the first process. It reads from a pipe that the launcher holds open, knows the process groups, and ends them when
+the pipe closes without notice.
 """
 
 from __future__ import annotations
@@ -27,25 +28,25 @@ class Guardian:
         self._folder: Path | None = None
 
     def marked(self, environment: dict[str, str]) -> dict[str, str]:
-        """Start the guardian, and return the environment by which it finds a process."""
+        """Start the guardian, and return the environment with the mark by which it finds a process."""
         self._start()
         return {**environment, _MARK: self._identity}
 
     def watch(self, pid: int) -> None:
-        """Register the process group that a process leads."""
+        """Register the process group whose leader has this process ID."""
         self._send(f"+{pid}\n")
 
     def owns(self, folder: Path) -> None:
-        """Register a folder of temporary files."""
+        """Register a folder of temporary files to delete if the launcher is killed."""
         self._folder = folder
         self._send(f"={folder}\n")
 
     def release(self, pid: int) -> None:
-        """Unregister a group that has ended."""
+        """Unregister a process group that has ended."""
         self._send(f"-{pid}\n")
 
     def close(self) -> None:
-        """Announce a regular end, and wait for the guardian to exit."""
+        """Announce that the launch ended normally, and wait for the guardian to exit."""
         self._closed = True
         process = self._process
         if process is None:
@@ -64,7 +65,7 @@ class Guardian:
     def _start(self) -> None:
         if self._process is not None or self._closed or not hasattr(os, "killpg"):
             return
-        with contextlib.suppress(OSError):  # the launch continues without a guardian
+        with contextlib.suppress(OSError):  # the launch continues without a guardian if it cannot start
             self._process = subprocess.Popen(  # noqa: S603 - Linkwright's own program
                 [sys.executable, "-I", "-S", "-X", "utf8", str(_PROGRAM), f"{_MARK}={self._identity}"],
                 stdin=subprocess.PIPE,

@@ -1,9 +1,9 @@
-"""The program of the guardian, which briefly outlives the launcher and ends the remaining processes.
+"""The program of the guardian, which ends the remaining processes of a killed launcher.
 
-It is run by path in a bare interpreter and imports little, so that it costs a launch next to nothing. Its standard
-input is a pipe from the launcher with a line for each event: ``+PID`` a process group was started, ``-PID`` the group
-ended, ``=PATH`` a folder of temporary files was created, ``.`` the launch ended regularly. If the pipe closes without
-the last one, the launcher was killed.
+It is run by path in a bare interpreter and imports little, so that it adds almost no time to a launch. Its standard
+input is a pipe from the launcher, with one line per event: ``+PID`` when a process group was started, ``-PID`` when the
+group ended, ``=PATH`` when a folder of temporary files was created, and ``.`` when the launch ended normally. If the
+pipe closes without the last line, the launcher was killed.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ _STAGES = ((signal.SIGINT, 1.0), (signal.SIGTERM, 0.5), (signal.SIGKILL, 0.0))
 
 
 def main(mark: str) -> None:
-    """Wait for the end of the launch.
+    """Wait for the launch to end, and end its remaining processes if the launcher was killed.
 
     Args:
-        mark: a variable ``NAME=VALUE`` in the environment of every process of the launch.
+        mark: an environment variable ``NAME=VALUE`` that every process of the launch has.
     """
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
@@ -44,10 +44,13 @@ def main(mark: str) -> None:
 
 
 def marked_groups(mark: bytes) -> set[int]:
-    """Return the process groups with the mark, including those started just before the launcher ended."""
+    """Return the process groups that carry the mark.
+
+    They include groups that were started just before the launcher ended.
+    """
     try:
         entries = os.listdir("/proc")  # noqa: PTH208 - importing pathlib would take longer than all the rest
-    except OSError:  # not Linux
+    except OSError:  # only Linux has /proc
         return set()
     pids = [int(entry) for entry in entries if entry.isdigit() and int(entry) != os.getpid()]
     return {_group_of(pid) for pid in pids if _has_mark(pid, mark)} - {0, os.getpgid(0)}
@@ -57,7 +60,7 @@ def _has_mark(pid: int, mark: bytes) -> bool:
     try:
         with open(f"/proc/{pid}/environ", "rb") as file:  # noqa: PTH123 - as above
             return mark in file.read().split(b"\0")
-    except OSError:  # it has ended, or belongs to another user
+    except OSError:  # the process has ended, or belongs to another user
         return False
 
 
@@ -69,7 +72,7 @@ def _group_of(pid: int) -> int:
 
 
 def end(groups: set[int]) -> None:
-    """End process groups, first with a gentle signal."""
+    """End process groups, escalating to stronger signals for the groups that remain."""
     for number, seconds in _STAGES:
         groups = {group for group in groups if send(group, number)}
         deadline = time.monotonic() + seconds

@@ -18,15 +18,15 @@ _CONSEQUENCES = frozenset({"LAUNCH121", "LAUNCH123", "LAUNCH137"})
 
 
 class Omissions:
-    """Decides which parts to skip, and reports them.
+    """Decides which parts of a launch to skip, and reports them.
 
     Attributes:
         any: whether any part was skipped.
 
     Args:
         log: the log of the launch.
-        wanted: whether to skip every part that cannot run; otherwise only parts that need missing software of others.
-        command: the command that launches the same and skips the parts that cannot run; None if there is none.
+        wanted: whether to skip every part that cannot run; otherwise only parts that need missing third-party software.
+        command: the command that repeats the launch and skips the parts that cannot run; None if there is none.
     """
 
     def __init__(self, log: LaunchLog, command: str | None, *, wanted: bool) -> None:
@@ -37,7 +37,10 @@ class Omissions:
         self._unreported: list[Note] = []
 
     def skip(self, error: LinkwrightError) -> bool:
-        """Skip the part that an error stopped, if missing software allows it, and return whether it was skipped."""
+        """Skip the part that caused an error if missing software allows it.
+
+        Return whether it was skipped.
+        """
         consequence = self.any and any(diagnostic.code in _CONSEQUENCES for diagnostic in error.diagnostics)
         if not (consequence or is_unavailable(error) or (self._wanted and _is_missing(error))):
             return False
@@ -60,7 +63,10 @@ class Omissions:
         self._unreported.clear()
 
     def offered(self, error: LinkwrightError) -> tuple[Diagnostic, ...]:
-        """Return the findings of an error that ends the launch, with the command that would skip the missing parts."""
+        """Return the findings of a fatal error.
+
+        A note on the command that would skip the missing part is added, if there is such a command.
+        """
         *others, last = error.diagnostics
         if self._command is None or not _is_missing(error):
             return error.diagnostics
@@ -69,7 +75,10 @@ class Omissions:
 
 
 def note_that_nothing_is_left(error: LinkwrightError) -> None:
-    """Add a note to an error on reading the launch file: why no part of it can be skipped."""
+    """Add a note to an error that explains why no part of the launch can be skipped.
+
+    The error occurred in reading the launch file.
+    """
     *others, last = error.diagnostics
     if _is_missing(error) and last.span is not None:
         note = Note(phrase("the launch file itself needs it, so no part can be skipped"))

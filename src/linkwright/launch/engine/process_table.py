@@ -1,4 +1,7 @@
-"""The table of a launch's processes: it starts, respawns and ends them, and leaves none behind."""
+"""The process table of a launch.
+
+It starts, respawns and ends processes, and leaves none running.
+"""
 
 from __future__ import annotations
 
@@ -31,15 +34,15 @@ class ProcessTable:
 
     @property
     def is_busy(self) -> bool:
-        """Whether any process runs."""
+        """Whether any process is running."""
         return bool(self._running)
 
     def start(self, plan: ProcessPlan, name: str) -> None:
-        """Start a process, follow it to its end, and respawn it if so planned."""
+        """Start a process, monitor it until it ends, and respawn it if its plan requests that."""
         self._session.spawn(self._follow(plan, name))
 
     def stop_matching(self, matcher: ProcessMatcher) -> None:
-        """Ask the processes whose actions match to end, each within the time of its plan."""
+        """Ask the processes whose actions match to end, each within the time in its plan."""
         for process in tuple(self._running):
             if matcher(process.plan.action):
                 self._session.spawn(process.stop())
@@ -54,7 +57,7 @@ class ProcessTable:
         """Ask all processes to end, and start no more.
 
         Args:
-            interrupted: whether the user interrupted the launch, so that pending processes are not started.
+            interrupted: whether the user interrupted the launch, in which case pending processes are not started.
         """
         self._ending.set()
         self._interrupted = interrupted
@@ -68,31 +71,34 @@ class ProcessTable:
 
     @property
     def names(self) -> list[str]:
-        """Return the log names of the running processes."""
+        """The log names of the running processes, sorted."""
         return sorted(process.name for process in self._running)
 
     def seconds_to_end(self) -> float:
-        """Return the maximum duration of `stop_all` in seconds."""
+        """Return the maximum time in seconds that `stop_all` may take."""
         plans = [process.plan for process in tuple(self._running)]
         return max((plan.seconds_to_sigterm + plan.seconds_to_sigkill for plan in plans), default=0.0)
 
     def kill_all(self) -> None:
-        """Kill all processes and the children of ended ones; safe to call from a signal handler."""
+        """Kill all processes, and the children of ended processes.
+
+        This is safe to call from a signal handler.
+        """
         for process in (*self._running, *self._left_behind):
             process.signal_group(getattr(signal, "SIGKILL", signal.SIGTERM))
 
     def owns(self, folder: Path) -> None:
-        """Have a folder deleted if the launcher is killed."""
+        """Register a folder to be deleted if the launcher is killed."""
         self._guardian.owns(folder)
 
     def close(self) -> None:
-        """Note that all processes have ended."""
+        """Close the guardian after all processes have ended."""
         self._guardian.close()
 
     async def _follow(self, plan: ProcessPlan, name: str) -> None:
         starts = 0
-        # As in ROS, a process whose action was executed before a later action failed is still started and then asked to
-        # end, because handlers wait for its exit. After an interrupt, it is not started.
+        # As in ROS, if an action starts a process and a later action fails, the process is still started and then asked
+        # to end, because handlers wait for its exit. After an interrupt, it is not started.
         while not self._ending.is_set() or (starts == 0 and not self._interrupted):
             process = RunningProcess(
                 plan, name, self._session.log, self._session.emit, self._session.would_handle, self._guardian

@@ -1,4 +1,7 @@
-"""Processes of a launch, each in its own process group, whose output is read line by line."""
+"""Processes of a launch.
+
+Each has its own process group, and its output is read line by line.
+"""
 
 from __future__ import annotations
 
@@ -35,15 +38,15 @@ _TERMINALS = frozenset({"xterm", "gnome-terminal", "konsole", "terminator", "x-t
 
 
 class RunningProcess:
-    """One process from its start to its end.
+    """A process of a launch, from its start to its end.
 
     Args:
-        plan: the process to start.
-        name: its name in the log, such as ``talker-1``.
-        log: the log for its output.
-        emit: receives its events.
-        wants_output: whether any handler is for its output.
-        guardian: ends it if the launcher is killed.
+        plan: the plan of the process to start.
+        name: the name of the process in the log, such as ``talker-1``.
+        log: the log that receives its output.
+        emit: the function that receives its events.
+        wants_output: returns whether any handler accepts an output event.
+        guardian: ends the process if the launcher is killed.
     """
 
     def __init__(
@@ -71,10 +74,10 @@ class RunningProcess:
         self._news = asyncio.Event()
 
     async def run(self) -> int:
-        """Follow the process from start to end, and return its exit status.
+        """Start the process, wait for it to end, and return its exit status.
 
         Raises:
-            LinkwrightError: LAUNCH142, it cannot be started.
+            LinkwrightError: LAUNCH142, the process cannot be started.
         """
         plan = self.plan
         if plan.log_command:
@@ -91,7 +94,7 @@ class RunningProcess:
             with contextlib.suppress(asyncio.TimeoutError):
                 await asyncio.wait_for(self._streams_closed.wait(), _LAST_WORDS_SECONDS)
         finally:
-            # Whatever happens here, no member of the process group may outlive the launcher.
+            # Even after an exception, no member of the process group may outlive the launcher.
             if not self._ended.is_set():
                 self.signal_group(_KILL)
             transport.close()
@@ -105,7 +108,10 @@ class RunningProcess:
         return returncode
 
     async def stop(self) -> None:
-        """Ask the process to end with SIGINT, then SIGTERM, then SIGKILL, each after the time in its plan."""
+        """Ask the process to end with SIGINT, then SIGTERM, then SIGKILL.
+
+        The waits between them are set in its plan.
+        """
         if self._stopping or self._ended.is_set():
             return
         self._stopping = True
@@ -140,12 +146,12 @@ class RunningProcess:
         return self._ended.is_set()
 
     def signal(self, number: signal.Signals) -> None:
-        """Send a signal on the request of a launch file."""
+        """Send a signal to the process that a launch file requested."""
         self._log.info_line(self.name, f"sending signal '{number.name}' to process[{self.name}]")
         self.signal_group(number)
 
     def group_lives(self) -> bool:
-        """Return whether the process or any of its children still runs."""
+        """Return whether the process or any of its children is still running."""
         if self._transport is None or not _HAS_GROUPS:
             return False
         try:
@@ -193,14 +199,14 @@ class RunningProcess:
             await loop.connect_read_pipe(partial(_Terminal, self, number), pipe)
 
     def started(self, transport: asyncio.SubprocessTransport) -> None:
-        """Note that the process runs; its output comes only after this."""
+        """Record that the process is running; its output arrives only after this call."""
         self._transport = transport
         self._guardian.watch(transport.get_pid())
         details = self._details(transport)
         self.plan.action.process_details = details
         self._log.info_line(self.name, f"process started with pid [{transport.get_pid()}]")
         self._emit(events.ProcessStarted(action=self.plan.action, **details))
-        if self._stopping:  # `stop` was called before the process existed
+        if self._stopping:  # `stop` was called before the process was created
             self.signal_group(signal.SIGINT)
 
     def _details(self, transport: asyncio.SubprocessTransport) -> dict[str, Any]:
@@ -250,7 +256,7 @@ class RunningProcess:
     # --- output ---------------------------------------------------------------------------------------------
 
     def take(self, number: int, chunk: bytes) -> None:
-        """Handle output of the process to stdout (1) or stderr (2)."""
+        """Handle output that the process wrote to stdout (1) or stderr (2)."""
         action = self.plan.action
         action.wrote(number, chunk)
         kind = events.ProcessStdout if number == 1 else events.ProcessStderr
@@ -262,13 +268,13 @@ class RunningProcess:
             self._show(number, line)
 
     def stream_closed(self, number: int) -> None:
-        """Note that stdout (1) or stderr (2) is closed."""
+        """Record that stdout (1) or stderr (2) is closed."""
         self._open_streams.discard(number)
         if not self._open_streams:
             self._streams_closed.set()
 
     def ended(self) -> None:
-        """Note that the process has ended."""
+        """Record that the process has ended."""
         self._ended.set()
         self._news.set()
 
@@ -282,7 +288,7 @@ class RunningProcess:
         self._log.process_line(self.name, number, shown, self.plan.destinations[number])
 
     def _report_end(self, pid: int, returncode: int) -> None:
-        as_asked = returncode in (-signal.SIGINT, 128 + signal.SIGINT) or not _HAS_GROUPS  # there it was ended
+        as_asked = returncode in (-signal.SIGINT, 128 + signal.SIGINT) or not _HAS_GROUPS  # terminated without a group
         if returncode == 0 or (self._stopping and as_asked):
             self._log.info_line(self.name, f"process has finished cleanly [pid {pid}]")
             return
@@ -291,7 +297,10 @@ class RunningProcess:
 
 
 class _Lines:
-    """Splits the output of a process into lines; very long or endless lines are shown in pieces."""
+    """Splits the output of a process into lines.
+
+    Overlong or unterminated lines are shown in parts.
+    """
 
     def __init__(self) -> None:
         self._decode = codecs.getincrementaldecoder("utf-8")("replace").decode
@@ -299,7 +308,7 @@ class _Lines:
         self._length = 0
 
     def feed(self, chunk: bytes) -> list[str]:
-        """Return the lines that a chunk of bytes completes."""
+        """Add a chunk of bytes, and return the lines that it completes."""
         first, *others = self._decode(chunk).split("\n")
         self._pieces.append(first)
         self._length += len(first)
@@ -311,7 +320,7 @@ class _Lines:
         return [line.rstrip("\r") for line in complete]
 
     def end(self) -> list[str]:
-        """Return the incomplete last line, if any."""
+        """Return the unterminated last line in a list, which is empty if there is none."""
         rest = "".join(self._pieces) + self._decode(b"", final=True)
         return [rest.rstrip("\r")] if rest else []
 
@@ -337,7 +346,7 @@ class _Streams(asyncio.SubprocessProtocol):
 
 
 class _Terminal(asyncio.Protocol):
-    """Forwards the output of a process on a pseudo terminal."""
+    """Forwards the output of a process that is attached to a pseudo-terminal."""
 
     def __init__(self, process: RunningProcess, number: int) -> None:
         self._process = process
@@ -351,5 +360,9 @@ class _Terminal(asyncio.Protocol):
 
 
 def _pseudo_terminals() -> list[tuple[int, int]]:
-    """Open two pseudo terminals, for stdout and stderr, if the system has them; return their outer and inner ends."""
+    """Open pseudo-terminals for stdout and stderr, if the system has them.
+
+    Returns:
+        The outer and inner end of each.
+    """
     return [os.openpty(), os.openpty()] if hasattr(os, "openpty") else []

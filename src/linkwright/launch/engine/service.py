@@ -1,4 +1,4 @@
-"""Launches from a user's program (``launch.LaunchService``)."""
+"""The service that runs launches from a user's program (``launch.LaunchService``)."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ class LaunchService:
     """Runs launch descriptions.
 
     Args:
-        argv: the arguments in the context, for the entities.
-        noninteractive: whether there is no terminal, so that Ctrl-C does not reach the processes by itself.
+        argv: the command-line arguments, which entities read from the context.
+        noninteractive: whether there is no terminal, so that Ctrl-C does not reach the processes directly.
         debug: whether details are logged.
         log_file_name: the name of the log file.
 
-    Descriptions and events that are added before a run are handled when it starts; event handlers stay for the next
-    run.
+    Descriptions and events that are added before a run are handled when it starts. Event handlers stay registered for
+    the next run.
     """
 
     _isolates_nodes = False
@@ -67,15 +67,15 @@ class LaunchService:
 
     @property
     def task(self) -> asyncio.Task[Any] | None:
-        """The task of the current run, if any."""
+        """The task of the current run, or None."""
         return self.__task
 
     def include_launch_description(self, launch_description: LaunchDescription) -> None:
-        """Queue a description to visit; may be called from any thread."""
+        """Queue a description to be visited; may be called from any thread."""
         self.emit_event(events.IncludeLaunchDescription(launch_description))
 
     def emit_event(self, event: Any) -> None:
-        """Put an event into the queue; may be called from any thread, and before the run."""
+        """Queue an event; may be called from any thread, and before the run."""
         with self.__lock:
             loop = self.event_loop
             if loop is None or threading.current_thread() is threading.main_thread():
@@ -84,11 +84,11 @@ class LaunchService:
                 loop.call_soon_threadsafe(self.__context.emit_event_sync, event)
 
     def shutdown(self, force_sync: bool = False) -> Coroutine[Any, Any, None] | None:
-        """End the launch; may be called from any thread.
+        """Shut the launch down; may be called from any thread.
 
         Returns:
-            An awaitable if it is called on the launch's loop, or between two runs of that loop, unless `force_sync` is
-            given.
+            An awaitable if this is called on the launch's event loop or between two runs of that loop, unless
+            `force_sync` is set.
         """
         if self.__session is None:
             return None
@@ -96,7 +96,7 @@ class LaunchService:
         return asyncio.sleep(0) if self.__is_thread_of_loop() and not force_sync else None
 
     def __is_thread_of_loop(self) -> bool:
-        """Return whether the caller is on the thread of the launch's loop."""
+        """Return whether the caller runs on the thread of the launch's event loop."""
         try:
             return asyncio.get_running_loop() is self.event_loop
         except RuntimeError:
@@ -113,7 +113,7 @@ class LaunchService:
             0, or 1 if something in the launch failed.
 
         Raises:
-            RuntimeError: it is already running, or this is not the main thread.
+            RuntimeError: the service is already running, or the caller is not on the main thread.
         """
         loop = get_loop()
         asyncio.set_event_loop(loop)  # the loop stays set for the thread, as in ROS
@@ -123,7 +123,7 @@ class LaunchService:
             _end_tasks(loop)
 
     async def run_async(self, *, shutdown_when_idle: bool = True) -> int:
-        """Run as a coroutine on the running loop; see `run`."""
+        """Run the launch as a coroutine on the running event loop; see `run`."""
         from linkwright.hosting.launch_log import LaunchLog
         from linkwright.hosting.signals import SignalWatch
         from linkwright.hosting.xacro_calls import Descriptions, use_descriptions
@@ -157,7 +157,7 @@ class LaunchService:
 
 
 def _end_tasks(loop: asyncio.AbstractEventLoop) -> None:
-    """Cancel the remaining tasks of a loop that stays in use."""
+    """Cancel the remaining tasks of an event loop that stays in use."""
     if loop.is_running():
         return
     left = asyncio.all_tasks(loop)
@@ -168,12 +168,15 @@ def _end_tasks(loop: asyncio.AbstractEventLoop) -> None:
 
 
 class ServiceOfProcesses(LaunchService):
-    """Runs every node as a process, so that tests see its output and its exit status."""
+    """Runs every node as a process, so that tests can observe its output and exit status."""
 
     _isolates_nodes = True
 
 
 def _starting_folders() -> list[Path]:
-    """Return the folders where the package search starts: those of the program and the current one."""
+    """Return the folders where the package search starts.
+
+    They are the program's folder and the current folder.
+    """
     program = Path(sys.argv[0]).absolute().parent if sys.argv and sys.argv[0] else Path.cwd()
     return [program, Path(os.getcwd())]  # noqa: PTH109 - the folder may not exist any more

@@ -1,4 +1,4 @@
-"""A running launch: the event queue, the visits to entities, the shutdown."""
+"""A running launch: its event queue, the visits to its entities, and its shutdown."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ _SILENT_SECONDS = 1.0
 
 
 class LaunchSession:
-    """One launch on the running event loop.
+    """A launch on the running event loop.
 
     Args:
         finder: the package finder.
         options: the options of the launch.
         log: the log of the launch.
-        context: an existing context with its handlers and queued events; a new one by default.
+        context: an existing context with its handlers and queued events; a new context by default.
     """
 
     def __init__(
@@ -101,7 +101,7 @@ class LaunchSession:
 
     @property
     def visiting(self) -> bool:
-        """Whether code of the launch file is running now, so that the event loop is blocked."""
+        """Whether code of the launch file is running now, which blocks the event loop."""
         return self._visiting
 
     @property
@@ -115,19 +115,19 @@ class LaunchSession:
         return Path(self._scratch.name)
 
     def include(self, description: LaunchDescriptionEntity) -> None:
-        """Queue a description to visit; may be called from any thread, and before the run."""
+        """Queue a description to be visited; may be called from any thread, and before the run."""
         self._included.append(description)
         if self.loop is not None:
             self.loop.call_soon_threadsafe(self._visit_included)
 
-    # --- requests of actions --------------------------------------------------------------------------------
+    # --- requests from actions ------------------------------------------------------------------------------
 
     def emit(self, event: events.Event) -> None:
-        """Put an event into the queue."""
+        """Queue an event."""
         self._queue.put_nowait(event)
 
     def visit(self, entity: LaunchDescriptionEntity, context: LaunchContext) -> None:
-        """Visit an entity and the entities that result from it; an error ends the launch, as in ROS."""
+        """Visit an entity and the entities that it returns; an error ends the launch, as in ROS."""
         self._visiting = True
         try:
             self._visit(entity, context)
@@ -143,7 +143,7 @@ class LaunchSession:
             self._omissions.report()
 
     def could_not_start(self, what: object, error: LinkwrightError) -> None:
-        """Report why something could not be started; the launch continues without it."""
+        """Report why a process or node could not be started; the launch continues without it."""
         if self._omissions.skip(error):
             self._omissions.report()
             return
@@ -151,7 +151,7 @@ class LaunchSession:
         self.fail(what)
 
     def fail(self, what: object) -> None:
-        """Record a failure: the launch exits with 1 unless the failure is cleared."""
+        """Record a failure; the launch exits with status 1 unless the failure is cleared."""
         self._failures.add(what)
 
     def clear_failure(self, what: object) -> None:
@@ -165,23 +165,23 @@ class LaunchSession:
 
     @property
     def has_processes(self) -> bool:
-        """Whether any process runs."""
+        """Whether any process is running."""
         return self.processes.is_busy
 
     def start_process(self, plan: ProcessPlan, name: str) -> None:
-        """Start a process, follow it to its end, and respawn it if so planned."""
+        """Start a process, monitor it until it ends, and respawn it if its plan requests that."""
         self.processes.start(plan, name)
 
     def would_handle(self, event: events.Event) -> bool:
-        """Return whether any handler takes an event."""
+        """Return whether any handler accepts an event."""
         return self.context.would_handle_event(event)
 
     def report(self, about: object, findings: Sequence[Diagnostic]) -> None:
-        """Report findings about a robot description, here and in the viewer."""
+        """Report findings about a robot description, both here and in the viewer."""
         self.reload.report(about, findings)
 
     def number_process(self, base_name: str) -> str:
-        """Return the log name of a process: the name of its program with the next number."""
+        """Return a process's log name, which is the program's name followed by the next number."""
         return f"{base_name}-{next(self._process_numbers)}"
 
     def call_later(
@@ -193,9 +193,9 @@ class LaunchSession:
         cancel_on_shutdown: bool = True,
         schedule: Schedule | None = None,
     ) -> Callable[[], None]:
-        """Schedule a visit to entities with the current locals; return a handle that cancels it.
+        """Schedule a visit to entities with the current locals.
 
-        `schedule` has the time counted by something else than the loop.
+        Return a function that cancels it. If `schedule` is given, it measures the time instead of the event loop.
         """
         assert self.loop is not None
         token = object()
@@ -223,7 +223,7 @@ class LaunchSession:
         self._waiting[token] = cancel if cancel_on_shutdown else None
         return cancel
 
-    # --- what the nodes of this process tell ------------------------------------------------------------------
+    # --- reports from the nodes of this process ---------------------------------------------------------------
 
     def node_started(self, plan: HostedPlan) -> None:
         """Report that a node of this process is running."""
@@ -231,17 +231,20 @@ class LaunchSession:
         self.emit(events.ProcessStarted(action=plan.owner, **plan.details))
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:
-        """Report that a node of this process has ended or could not start, with an exit status."""
+        """Report that a node of this process has ended or could not start, with its exit status."""
         self.emit(events.ProcessExited(action=plan.owner, returncode=status, **plan.details))
 
-    # --- the end --------------------------------------------------------------------------------------------
+    # --- shutdown -------------------------------------------------------------------------------------------
 
     def shut_down(self, reason: str) -> None:
-        """End the launch after the queued events."""
+        """End the launch after the queued events have been handled."""
         self.emit(events.Shutdown(reason=reason))
 
     def interrupt(self, reason: str) -> None:
-        """End the launch on the user's request; processes that are already ending get half a second."""
+        """End the launch because the user interrupted it.
+
+        Processes that are already ending get half a second.
+        """
         self.log.warning_line("launch", reason)
         if self.ending:
             self.processes.hurry()
@@ -251,11 +254,11 @@ class LaunchSession:
             self.loop.call_later(_SILENT_SECONDS, self._log_awaited)
 
     def seconds_to_end(self) -> float:
-        """Return how many seconds the processes may take to end."""
+        """Return the maximum time in seconds that the processes may take to end."""
         return self.processes.seconds_to_end()
 
     def kill_all(self) -> None:
-        """End the processes at once; safe to call from a signal handler."""
+        """Kill the processes immediately; safe to call from a signal handler."""
         self.processes.kill_all()
 
     def _log_awaited(self) -> None:
@@ -292,7 +295,7 @@ class LaunchSession:
             raise located(entity.explain_inside(error), entity.place) from error
 
     def _await_repair(self, entity: LaunchDescriptionEntity, context: LaunchContext, error: DescriptionError) -> None:
-        """Visit an entity again when the model file that it needs can be expanded."""
+        """Record a failure, and visit the entity again once its model file can be expanded."""
         self.fail(error.call)
 
         def again(_text: str) -> None:
@@ -348,7 +351,7 @@ class LaunchSession:
         self._react(event)
 
     def _react(self, event: events.Event) -> None:
-        """Handle the events that end the launch, or stop or signal its processes."""
+        """Handle events that end the launch, or that stop or signal its processes."""
         if isinstance(event, events.Shutdown):
             if not self.ending:
                 self._begin_end(event)
@@ -380,7 +383,7 @@ class LaunchSession:
             self.shut_down("the robot cannot be read, and there is no viewer to wait in")
 
     def hold(self, future: asyncio.Future[Any]) -> None:
-        """Keep the launch running until a future of an entity is done."""
+        """Keep the launch running until an entity's future is done."""
         if future.done() or future in self._held:
             return
         self._held.add(future)
@@ -392,7 +395,7 @@ class LaunchSession:
         future.add_done_callback(done)
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run a coroutine in the background; the launch waits for its end."""
+        """Run a coroutine in the background; the launch waits for it to finish."""
         assert self.loop is not None
         task = self.loop.create_task(work)
         self._tasks.add(task)

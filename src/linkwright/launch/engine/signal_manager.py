@@ -1,4 +1,4 @@
-"""Signal handlers of users' programs on an event loop (``launch.utilities.signal_management``)."""
+"""Signal handlers of users' programs (``launch.utilities.signal_management``)."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ if TYPE_CHECKING:
 
 
 class AsyncSafeSignalManager:
-    """Runs signal handlers on an event loop inside a ``with`` block, in the main thread; blocks may be nested.
+    """Runs signal handlers on an event loop while a ``with`` block in the main thread is active.
+
+    Blocks may be nested.
 
     Args:
-        loop: calls the handlers.
+        loop: the event loop that calls the handlers.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
@@ -37,7 +39,9 @@ class AsyncSafeSignalManager:
             self._give_back(number)
 
     def handle(self, signum: int, handler: Callable[[int], object] | None) -> Callable[[int], object] | None:
-        """Set the handler of a signal, which is called with the signal's number; None removes it.
+        """Set the handler of a signal, or remove it if `handler` is None.
+
+        The handler is called with the signal's number.
 
         Returns:
             The previous handler, or None.

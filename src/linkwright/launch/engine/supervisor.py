@@ -1,4 +1,4 @@
-"""The interface of the session for the parts that run processes."""
+"""The interface of the session to the modules that run processes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ class SessionOptions(HostOptions):
         isolate: whether Linkwright's own nodes run in separate processes.
         shutdown_when_idle: whether the launch ends when it is idle.
         skip_missing: whether to skip parts whose package, program or file is missing.
-        command_to_skip_missing: the command that does so; None if it is already so or there is no such command.
+        command_to_skip_missing: the command that launches with `skip_missing`; None if that is already set or there is
+            no such command.
     """
 
     isolate: bool = False
@@ -34,10 +35,10 @@ class Supervisor(RunningLaunch, Protocol):
     """The supervisor of the processes of a launch."""
 
     def emit(self, event: Event) -> None:
-        """Put an event into the queue."""
+        """Queue an event."""
 
     def would_handle(self, event: Event) -> bool:
-        """Return whether any handler takes an event."""
+        """Return whether any handler accepts an event."""
 
     def could_not_start(self, what: object, error: LinkwrightError) -> None:
-        """Report why something could not be started; the launch continues without it."""
+        """Report why a process or node could not be started; the launch continues without it."""

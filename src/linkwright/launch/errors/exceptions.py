@@ -1,4 +1,7 @@
-"""The exceptions of ``launch`` that programs catch, and errors that are of both ROS's class and ours."""
+"""The exceptions of ``launch`` that programs catch.
+
+Some of our errors also have the class of a ROS exception.
+"""
 
 from __future__ import annotations
 
@@ -9,12 +12,12 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError
 
 
 class InvalidLaunchFileError(Exception):
-    """A launch file cannot be read.
+    """Raised when a launch file cannot be read.
 
     Args:
         extension: the file name extension; empty if it does not determine the language.
-        likely_errors: the exceptions of the parsers that tried.
-        launch_file_path: the file.
+        likely_errors: the exceptions of the parsers that tried to read the file.
+        launch_file_path: the path of the file.
     """
 
     def __init__(
@@ -37,19 +40,19 @@ class InvalidLaunchFileError(Exception):
 
 
 class InvalidFrontendLaunchFileError(InvalidLaunchFileError):
-    """No parser can read a launch file in a markup language."""
+    """Raised when no parser can read a launch file in a markup language."""
 
 
 class InvalidPythonLaunchFileError(InvalidLaunchFileError):
-    """A Python launch file does not give a launch description."""
+    """Raised when a Python launch file does not provide a launch description."""
 
 
 class SubstitutionFailure(RuntimeError):  # noqa: N818 - its name in ROS
-    """A substitution cannot give a text."""
+    """Raised when a substitution cannot be evaluated to text."""
 
 
 def as_ros_error(ros_error: Exception | None, *diagnostics: Diagnostic) -> LinkwrightError:
-    """Return a LinkwrightError that is also of another exception's class.
+    """Return a LinkwrightError that is also an instance of a ROS exception's class.
 
     Args:
         ros_error: the exception that a program may expect, whose text begins the error's text; None for a plain error.

@@ -35,7 +35,7 @@ class Place(ABC):
 
     @staticmethod
     def of_caller() -> Place | None:
-        """Return the markup being read, or the nearest stack frame outside Linkwright, or None.
+        """Return the markup being read, else the nearest stack frame outside Linkwright, or None.
 
         The frames that started our command line or the event loop (a script, Python itself) do not count.
         """
@@ -54,25 +54,25 @@ class Place(ABC):
     @property
     @abstractmethod
     def file(self) -> str:
-        """The file."""
+        """The name of the file."""
 
     @abstractmethod
     def source(self) -> SourceText | None:
-        """The text of the file; None if it cannot be read again."""
+        """Return the text of the file, or None if it cannot be read again."""
 
     @abstractmethod
     def span(self, source: SourceText | None = None) -> Span:
-        """The lines and columns, computed when a message needs them."""
+        """Return the lines and columns, which are computed only when a message needs them."""
 
 
 @dataclass(frozen=True, slots=True)
 class MarkupPlace(Place):
-    """A piece of an XML or YAML launch file.
+    """A range of text in an XML or YAML launch file.
 
     Attributes:
         text: the text of the file.
-        start: character offset of the piece.
-        end: offset of its end, exclusive.
+        start: the character offset where the range starts.
+        end: the character offset where the range ends, exclusive.
     """
 
     text: SourceText
@@ -81,24 +81,24 @@ class MarkupPlace(Place):
 
     @property
     def file(self) -> str:
-        """The file."""
+        """The name of the file."""
         return self.text.name
 
     def source(self) -> SourceText:
-        """The text of the file."""
+        """Return the text of the file."""
         return self.text
 
     def span(self, source: SourceText | None = None) -> Span:
-        """The lines and columns of the piece."""
+        """Return the lines and columns of the range."""
         return self.text.span(self.start, self.end)
 
     def part(self, start: int, end: int) -> MarkupPlace:
-        """Return a part of the piece, by offsets in the file."""
+        """Return a smaller range of the same file, by offsets in the file."""
         return MarkupPlace(self.text, min(self.start + start, self.end), min(self.start + end, self.end))
 
 
 class Placed:
-    """An object that records the location in the user's program or launch file where it was created.
+    """An object that records the place where the user's program or launch file created it.
 
     Attributes:
         place: the location; None if it is not known.
@@ -107,7 +107,10 @@ class Placed:
     place: Place | None = None
 
     def __new__(cls: type[T], *_: Any, **__: Any) -> T:  # noqa: PYI019 - Self needs Python 3.11
-        """Record the place here, because users' classes need not call our constructor."""
+        """Record the place where the object is created.
+
+        This is not done in ``__init__``, because users' classes need not call our constructor.
+        """
         made = super().__new__(cls)
         made.place = Place.of_caller()
         return made
@@ -118,7 +121,7 @@ _being_read: list[Place | None] = []
 
 @contextmanager
 def reading(place: Place | None) -> Iterator[None]:
-    """Attribute objects that are created in this context to a place."""
+    """Set the place that is recorded for objects created in this context."""
     _being_read.append(place)
     try:
         yield
@@ -128,7 +131,10 @@ def reading(place: Place | None) -> Iterator[None]:
 
 @contextmanager
 def not_reading() -> Iterator[None]:
-    """Attribute objects that are created in this context to Python's stack, not to the markup being read."""
+    """Record the caller's place on Python's stack for objects created in this context.
+
+    Otherwise, they would get the place in the markup being read.
+    """
     kept = _being_read[:]
     _being_read.clear()
     try:
@@ -139,7 +145,7 @@ def not_reading() -> Iterator[None]:
 
 @dataclass(frozen=True, slots=True)
 class CodePlace(Place):
-    """A point of a running program."""
+    """A location in the code of a running program."""
 
     code: CodeType
     instruction: int
@@ -147,15 +153,15 @@ class CodePlace(Place):
 
     @property
     def file(self) -> str:
-        """The file of the program text."""
+        """The name of the file that contains the code."""
         return self.code.co_filename
 
     def source(self) -> SourceText | None:
-        """The program text; None if it cannot be read again."""
+        """Return the text of the program file, or None if it cannot be read again."""
         return read_source(self.file)
 
     def span(self, source: SourceText | None = None) -> Span:
-        """The expression at the place, or its line if Python (3.10) records no columns."""
+        """Return the expression at the place, or its line if Python (3.10) records no columns."""
         positions = getattr(self.code, "co_positions", None)
         if positions is not None:
             exact = next(islice(positions(), self.instruction // 2, None), None)
@@ -182,7 +188,7 @@ def read_source(filename: str) -> SourceText | None:
 
 
 def located(error: LinkwrightError, place: Place | None) -> LinkwrightError:
-    """Return the error with a place for its diagnostics; an existing place stays."""
+    """Return the error with a place set on each diagnostic that has none."""
     if place is None or any(diagnostic.span for diagnostic in error.diagnostics):
         return error
     source = place.source()
@@ -206,7 +212,8 @@ def error_at(
         code: the code of the diagnostic.
         message: the message of the diagnostic.
         hint: the hint of the diagnostic.
-        ros_error: the exception that ROS raises here; the error has its class and text, for programs that check them.
+        ros_error: the exception that ROS raises in this case; the new error has its class and text, for programs that
+            check them.
     """
     return located(as_ros_error(ros_error, Diagnostic(code, message, hint=hint)), place)
 

@@ -1,6 +1,7 @@
-"""Marks on errors that tell missing software of others from mistakes of the user.
+"""Marks on errors that distinguish missing third-party software from mistakes of the user.
 
-A launch skips such a part and continues: the simulation of a robot is useful without move_group.
+A launch skips a part whose software is missing and continues: the simulation of a robot is useful even without
+move_group.
 """
 
 from __future__ import annotations
@@ -12,18 +13,24 @@ _MARK = "is_unavailable"
 
 
 def unavailable(error: LinkwrightError) -> LinkwrightError:
-    """Mark an error whose package or program is not installed and not misspelt."""
+    """Mark an error as caused by a package or program that is not installed.
+
+    A misspelt name is not such a cause.
+    """
     vars(error)[_MARK] = True
     return error
 
 
 def is_unavailable(error: LinkwrightError) -> bool:
-    """Return whether an error was marked, see `unavailable`."""
+    """Return whether an error was marked by `unavailable`."""
     return bool(vars(error).get(_MARK))
 
 
 def is_foreign(error: LinkwrightError) -> bool:
-    """Return whether an error on reading a launch file is about a missing package or module of others."""
+    """Return whether an error is about a missing third-party package or module.
+
+    The error occurred in reading a launch file.
+    """
     if isinstance(error, PackageNotFoundError):
         return not error.is_slip
     return isinstance(error, ModuleNotFoundError) or is_unavailable(error)

@@ -1,4 +1,7 @@
-"""Exceptions in a user's launch file as findings, with location and similar names, without a traceback."""
+"""Exceptions in a user's launch file, reported as findings without a traceback.
+
+The findings have a location and similar names.
+"""
 
 from __future__ import annotations
 
@@ -38,15 +41,15 @@ _UNEXPECTED_ARGUMENT = re.compile(r"([\w.]+)\(\) got an unexpected keyword argum
 
 
 def explain(error: BaseException, where: str, fallback: Place | None = None) -> LinkwrightError:
-    """Convert an exception to an error with the user's own line.
+    """Convert an exception to an error that points at the user's own line.
 
     Args:
         error: the exception, which may come from ``sys.exit``.
         where: the code that was running, such as "launch file 'x.launch.py'".
-        fallback: the place to report if no line of the user was running.
+        fallback: the place to report if no line of the user's code was running.
 
     Returns:
-        The error itself if it is a LinkwrightError, with a place if it had none; else a LAUNCH104.
+        The error itself if it is a LinkwrightError, with a place if it had none; otherwise a new error LAUNCH104.
     """
     trail = list(_user_places(error.__traceback__))
     place = trail[-1] if trail else fallback
@@ -62,14 +65,14 @@ def explain(error: BaseException, where: str, fallback: Place | None = None) -> 
     )
     source = place.source() if place else None
     span = place.span(source) if place else None
-    callers = dict.fromkeys(reversed(trail[:-1]))  # a recursive function is reported once
+    callers = dict.fromkeys(reversed(trail[:-1]))  # report a recursive function only once
     notes = tuple(Note(phrase("called from here"), caller.span(read_source(caller.file))) for caller in callers)
     diagnostic = Diagnostic("LAUNCH104", message, span, notes=notes, hint=_hint(error, source, span), source=source)
     return as_ros_error(error if isinstance(error, Exception) else None, diagnostic)
 
 
 def endless(place: Place | None) -> LinkwrightError:
-    """Return the error about apparently endless nesting of actions."""
+    """Return the error that reports apparently endless nesting of actions."""
     message = phrase("launch actions are nested without end: more than {count} levels", count=DEEPEST)
     hint = phrase(
         "a launch file that includes itself, or a function that returns itself, needs a condition that ends "
@@ -79,7 +82,7 @@ def endless(place: Place | None) -> LinkwrightError:
 
 
 def too_deep(path: str) -> LinkwrightError:
-    """Return the error about a launch file that is nested too deeply for Python's stack."""
+    """Return the error for a launch file that is nested too deeply for Python's stack."""
     message = phrase("launch file '{path}' is nested too deeply to be read", path=display_path(path))
     return error_at(None, "LAUNCH156", message)
 
@@ -113,7 +116,10 @@ def _hint(error: BaseException, source: SourceText | None, span: Span | None) ->
 
 
 def _offered(owner: object) -> list[str]:
-    """Return the public names of an object; not submodules, which are often named like their contents."""
+    """Return the public names of an object.
+
+    Submodules are excluded, because they are often named like their contents.
+    """
     return [
         name
         for name in dir(owner)
@@ -144,7 +150,7 @@ def _import_hint(error: ImportError) -> Phrase | None:
 
 
 def _keyword_hint(error: TypeError) -> Phrase | None:
-    """Return a hint with the nearest argument name for a call with an unknown argument."""
+    """Return a hint that names the nearest valid argument for a call with an unknown argument."""
     found = _UNEXPECTED_ARGUMENT.search(str(error))
     frame = _innermost_frame(error, users_only=True)
     if not found or frame is None:
@@ -156,7 +162,7 @@ def _keyword_hint(error: TypeError) -> Phrase | None:
 
 
 def _missing_hint(error: TypeError, source: SourceText | None, span: Span | None) -> Phrase | None:
-    """Return a hint with the argument in the call that may be a misspelt required one."""
+    """Return a hint that names an argument that may be a misspelt required one."""
     found = _MISSING_ARGUMENT.search(str(error))
     if not found or source is None or span is None:
         return None
@@ -172,7 +178,10 @@ def _missing_hint(error: TypeError, source: SourceText | None, span: Span | None
 
 
 def _called_objects(frame: FrameType, class_name: str) -> list[Any]:
-    """Return the classes in the frame that are, or derive from, the class whose constructor failed."""
+    """Return the functions and classes of a frame to which a failed call may refer.
+
+    These are the functions with the given name, and the classes with this name or derived from such a class.
+    """
     known = [*frame.f_globals.values(), *frame.f_locals.values()]
     return [
         function_type

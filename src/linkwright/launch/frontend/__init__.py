@@ -1,1 +1,1 @@
-"""Readers of launch files (Python, XML, YAML) and of the substitutions in them."""
+"""Readers for launch files (Python, XML, YAML) and for the substitutions in them."""

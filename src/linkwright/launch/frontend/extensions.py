@@ -1,4 +1,7 @@
-"""Extensions of launch files (tags, substitutions, languages) of Linkwright, installed packages and the workspace."""
+"""Launch file extensions (tags, substitutions, languages).
+
+They come from Linkwright, installed packages and the workspace.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +40,10 @@ _STAND_INS = "linkwright.launch_extensions"
 
 
 def load(group: str) -> Iterator[tuple[str, Any]]:
-    """Yield the name and object of each entry point of a group, ours first; one that fails yields a warning instead."""
+    """Yield the name and object of each entry point of a group, Linkwright's first.
+
+    An entry point that fails to load is skipped with a warning.
+    """
     installed = entry_points(group=group)
     ours = (EntryPoint(name, value, group) for name, value in _OURS[group].items())
     stand_ins = extensions(_STAND_INS).values() if group == ACTIONS else ()
@@ -56,7 +62,7 @@ _loaded: set[tuple[Path, str]] = set()
 
 
 def load_workspace_extensions() -> None:
-    """Import the extension modules of the packages that the active finder finds, each once."""
+    """Import the extension modules of the packages that the active finder finds, each only once."""
     finder = current_finder()
     for package, share in finder.packages().items():
         for module in _modules(package, share):
@@ -78,7 +84,7 @@ def _import(module: str, finder: PackageFinder, share: Path) -> None:
 
 
 def _modules(package: str, share: Path) -> Iterator[str]:
-    """Return the modules that a package's entry points name."""
+    """Yield the modules that a package's entry points name."""
     if is_installed(share):
         for folder in python_folders(install_prefix(share), package):
             for path in folder.glob("*-info/entry_points.txt"):
@@ -91,7 +97,7 @@ def _modules(package: str, share: Path) -> Iterator[str]:
 
 
 def _named(lines: list[str]) -> Iterator[str]:
-    """Return the modules in lines of the form ``name = module:attribute``."""
+    """Yield the modules in lines of the form ``name = module:attribute``."""
     for line in lines:
         _, equals, target = line.partition("=")
         module = target.partition(":")[0].strip()

@@ -1,8 +1,8 @@
-r"""Substitutions in text: ``$(name argument ...)``, with quotes, escapes and substitutions inside.
+r"""Substitutions in text: ``$(name argument ...)``.
 
-The rules are those of ``launch.frontend``. A backslash escapes the next character. Spaces separate arguments; an
-argument with spaces is in single or double quotes. Inside quotes, the same quotes need a backslash, and a substitution
-has arguments without quotes.
+They may contain quotes, escapes and nested substitutions. The rules are those of ``launch.frontend``. A backslash
+escapes the next character. Spaces separate arguments, and an argument with spaces is written in single or double
+quotes. Inside quotes, the same kind of quote needs a backslash, and a substitution has unquoted arguments.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def parse_substitution(string_value: str) -> list[Substitution]:
     """Parse a text into a list of substitutions.
 
     Raises:
-        ValueError: LAUNCH119, it cannot be parsed.
+        ValueError: LAUNCH119, the text cannot be parsed.
         RuntimeError: LAUNCH119, there is no such substitution.
     """
     if not string_value:
@@ -41,7 +41,9 @@ def parse_substitution(string_value: str) -> list[Substitution]:
 
 
 def parse_if_substitutions(value: Any) -> Any:
-    """Parse the substitutions in the strings of a value; strings without any stay strings.
+    """Parse the substitutions in the strings of a value.
+
+    Strings without substitutions stay strings.
 
     Raises:
         ValueError: a list has plain values of several types.
@@ -62,7 +64,7 @@ def _parse_if(value: Any) -> Any:
 
 
 class _Reader:
-    """Parses one text."""
+    """Parses one text into substitutions."""
 
     def __init__(self, text: str, place: Place | None) -> None:
         self._text = text
@@ -76,11 +78,11 @@ class _Reader:
         return parts
 
     def _parts(self, until: str, argument: bool) -> list[Substitution]:
-        """Yield text and substitutions up to a closing character.
+        """Parse text and substitutions up to a closing character.
 
         Args:
             until: the closing quote, which is not consumed; empty outside quotes.
-            argument: whether they form an argument, so that a space or a parenthesis ends them too.
+            argument: whether the parts form an argument, which a space or a parenthesis ends, too.
         """
         parts: list[Substitution] = []
         start = self._at

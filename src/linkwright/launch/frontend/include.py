@@ -50,8 +50,8 @@ _FOLDER = "current_launch_file_directory"
 class IncludeLaunchDescription(Action):
     """Visits the description of another launch file.
 
-    As in ROS, launch configurations are shared with the including file, in both directions; a GroupAction
-    around it keeps them apart.
+    As in ROS, launch configurations are shared with the including file, in both directions. A GroupAction around this
+    action keeps them separate.
 
     Args:
         launch_description_source: the source of the description, or a path.
@@ -69,15 +69,15 @@ class IncludeLaunchDescription(Action):
         if not isinstance(launch_description_source, LaunchDescriptionSource):
             launch_description_source = AnyLaunchDescriptionSource(launch_description_source)
         self._source = launch_description_source
-        # As in ROS, a value that is not a string, such as None, is an error only at run time: the file may never be
-        # included.
+        # As in ROS, a value that is not a string, such as None, is an error only when the file is included, which may
+        # never happen.
         self._arguments = [
             (normalize_to_list_of_substitutions(name), _normalized(value)) for name, value in launch_arguments or ()
         ]
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read ``file`` and the ``arg`` (or ``let``) inside."""
+        """Read the attribute ``file`` and the ``arg`` (or ``let``) tags inside."""
         _, kwargs = super().parse(entity, parser)
         kwargs["launch_description_source"] = parser.parse_substitution(entity.get_attr("file"))
         arguments = []
@@ -97,15 +97,18 @@ class IncludeLaunchDescription(Action):
 
     @property
     def launch_arguments(self) -> list[tuple[list[Substitution], Any]]:
-        """Names and values of the arguments as substitutions; values that cannot be converted stay as given."""
+        """The names and values of the arguments as substitutions.
+
+        Values that cannot be converted stay as given.
+        """
         return self._arguments
 
     def describe(self) -> str:
-        """Return the source of the description."""
+        """Return a text that names the source of the description."""
         return f"{type(self).__name__}({self._source.location})"
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """Return the description, if it can be read before the launch runs."""
+        """Return the included description, if it can be read before the launch runs."""
         description = self._source.try_get_launch_description_without_context()
         return [] if description is None else [description]
 
@@ -114,12 +117,12 @@ class IncludeLaunchDescription(Action):
         return self._source.try_get_launch_description_without_context() is None
 
     def arguments_given_inside(self) -> tuple[str, ...]:
-        """Return the names of the arguments that are plain text."""
+        """Return the names of the given arguments whose names are plain text."""
         names = (name[0] for name, _ in self._arguments if len(name) == 1)
         return tuple(name.text for name in names if isinstance(name, TextSubstitution))
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """Return the description to visit next, with its arguments set.
+        """Return the description to visit next, preceded by actions that set its arguments.
 
         Raises:
             RuntimeError: LAUNCH114, a required argument is missing.
@@ -150,7 +153,7 @@ class IncludeLaunchDescription(Action):
         ]
 
     def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
-        """Return an error in the included description with a note on where it was included."""
+        """Return an error in the included description, with a note on where it was included."""
         if self.place is not None and self._source.location_path is not None:
             note = Note(phrase("included from here"), self.place.span(self.place.source()))
             error.diagnostics = tuple(
@@ -160,12 +163,12 @@ class IncludeLaunchDescription(Action):
         return error
 
     def _is_of_substitute(self) -> bool:
-        """Return whether the file is missing in our replacement of a ROS package."""
+        """Return whether the file is missing from our substitute for a ROS package."""
         path = self._source.location_path
         return path is not None and not path.exists() and any(is_substitute(folder) for folder in path.parents)
 
     def _file_values(self) -> dict[str, str]:
-        """Return the locals that name the file being visited."""
+        """Return the locals that hold the path and folder of the included file."""
         path = self._source.location_path
         if path is None:
             return {}
@@ -229,9 +232,12 @@ def _normalized(value: Any) -> Any:
 
 
 class IncludeScopedLaunchDescription(IncludeLaunchDescription):
-    """An `IncludeLaunchDescription` whose launch configurations and environment end with it."""
+    """An `IncludeLaunchDescription` with its own scope.
+
+    Launch configurations and environment end with the included file.
+    """
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """Return the description in a scope, to visit next."""
+        """Return the entities to visit next: the description, inside a scope."""
         opening: list[LaunchDescriptionEntity] = [PushLaunchConfigurations(), PushEnvironment()]
         return [*opening, *super().execute(context), PopEnvironment(), PopLaunchConfigurations()]

@@ -1,4 +1,4 @@
-"""Creation of the action of a tag and of the substitution ``$(name ...)``."""
+"""Creation of actions from tags, and of substitutions from ``$(name ...)``."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 
 def _method(methods: dict[str, Any], name: str) -> Any:
-    """Return the parse function of a tag or substitution; load extensions of unbuilt packages if it is unknown."""
+    """Return the parse function of a tag or substitution.
+
+    If the name is unknown, load the extensions of unbuilt packages first.
+    """
     if name not in methods:
         from linkwright.launch.frontend.extensions import load_workspace_extensions
 
@@ -26,7 +29,7 @@ def _method(methods: dict[str, Any], name: str) -> Any:
 
 
 def instantiate_action(entity: Entity, parser: Parser) -> Action:
-    """Return the action of a tag.
+    """Create the action for a tag.
 
     Raises:
         RuntimeError: LAUNCH115, the tag is not known.
@@ -60,7 +63,7 @@ def instantiate_action(entity: Entity, parser: Parser) -> Action:
 def instantiate_substitution(
     type_name: str, args: Sequence[Any] | None = None, place: Place | None = None
 ) -> Substitution:
-    """Return the substitution of a name, with a list of substitutions for each argument.
+    """Create the substitution with a name, given a list of substitutions for each argument.
 
     Raises:
         RuntimeError: LAUNCH119, the name is not known, or its arguments are wrong.

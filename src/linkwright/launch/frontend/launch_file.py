@@ -1,4 +1,4 @@
-"""Readers of launch files of any kind: Python, XML and YAML."""
+"""Readers for launch files of any kind: Python, XML and YAML."""
 
 from __future__ import annotations
 
@@ -21,10 +21,12 @@ _MARKUP = {".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".yml": "yaml"}
 
 
 def load_launch_file(path: Path) -> LaunchDescription:
-    """Load the description of a launch file, whose kind follows from its name, or else by trying.
+    """Load the description of a launch file.
+
+    The kind of the file is determined by its name or else by trying each.
 
     Raises:
-        LinkwrightError: LAUNCH101 to LAUNCH109 and LAUNCH115 to LAUNCH119, what is wrong with the file.
+        LinkwrightError: LAUNCH101 to LAUNCH109 and LAUNCH115 to LAUNCH119, the errors in the file.
     """
     if path.suffix == ".py":
         return load_python_launch_file(path)
@@ -48,7 +50,9 @@ def load_launch_file(path: Path) -> LaunchDescription:
 
 
 def load_markup_launch_file(path: Path, text: str | None = None) -> LaunchDescription:
-    """Load the description of an XML or YAML launch file, or of one in a language with a parser in a package.
+    """Load the description of a launch file in a markup language.
+
+    The language is XML, YAML or one for which a package has a parser.
 
     Raises:
         LinkwrightError: LAUNCH101, LAUNCH102, LAUNCH107 to LAUNCH109 and LAUNCH115 to LAUNCH119.
@@ -68,7 +72,7 @@ _ANY = "launch.launch_description_sources.any_launch_file_utilities"
 
 
 def load_python_launch_file_as_module(launch_file_path: str | os.PathLike[str]) -> ModuleType:
-    """Run a Python launch file as a module.
+    """Run a Python launch file, and return it as a module.
 
     Raises:
         FileNotFoundError: LAUNCH101, there is no such file.
@@ -81,7 +85,7 @@ def get_launch_description_from_python_launch_file(launch_file_path: str | os.Pa
 
     Raises:
         FileNotFoundError: LAUNCH101, there is no such file.
-        InvalidPythonLaunchFileError: LAUNCH105, it has no ``generate_launch_description``.
+        InvalidPythonLaunchFileError: LAUNCH105, the file has no ``generate_launch_description``.
     """
     return load_python_launch_file(Path.cwd() / launch_file_path)
 
@@ -102,12 +106,14 @@ def get_launch_description_from_any_launch_file(
     *,
     parser: Any = None,  # noqa: ARG001 - the interface in ROS
 ) -> LaunchDescription:
-    """Load a launch file of any kind: first as its name suggests, then as the other kind.
+    """Load a launch file of any kind.
+
+    The kind that its name suggests is tried first, and then the other.
 
     Raises:
         InvalidLaunchFileError: LAUNCH107, neither can read it.
     """
-    names = sys.modules.get(_ANY, sys.modules[__name__])  # users and tests replace these functions
+    names = sys.modules.get(_ANY, sys.modules[__name__])  # users and tests may replace them
     in_markup = names.get_launch_description_from_frontend_launch_file
     in_python = names.get_launch_description_from_python_launch_file
     path = Path(launch_file_path)

@@ -1,4 +1,7 @@
-"""The base of XML and YAML entities: it records which parts were read, and reports the others."""
+"""The base class of XML and YAML entities.
+
+It records the parts that were read, and reports the others.
+"""
 
 from __future__ import annotations
 
@@ -14,9 +17,9 @@ class MarkupEntity(Entity):
     """An entity with named parts, which records the parts that were read.
 
     Args:
-        type_name: its tag.
-        place: its location.
-        parent: the entity around it.
+        type_name: the tag of the entity.
+        place: the location of the entity.
+        parent: the enclosing entity.
     """
 
     def __init__(self, type_name: str, place: Place | None, parent: Entity | None) -> None:
@@ -27,17 +30,17 @@ class MarkupEntity(Entity):
 
     @property
     def type_name(self) -> str:
-        """The tag."""
+        """The tag of the entity."""
         return self._type_name
 
     @property
     def parent(self) -> Entity | None:
-        """The entity around it."""
+        """The enclosing entity, or None for the root."""
         return self._parent
 
     @property
     def place(self) -> Place | None:
-        """The location."""
+        """The location of the entity."""
         return self._place
 
     def _check_all_asked(self, present: Iterable[str], what: str, ros_text: str) -> None:
@@ -45,7 +48,7 @@ class MarkupEntity(Entity):
 
         Args:
             present: the names of all parts.
-            what: the word for a part.
+            what: the word for such a part in the message.
             ros_text: ROS's own text, to which the names are appended.
         """
         unknown = [name for name in present if name not in self._asked]
@@ -87,7 +90,7 @@ class MarkupEntity(Entity):
 
 
 def type_words(data_type: Any) -> Phrase:
-    """Return the name of a type for users."""
+    """Return the name of a type in words for users."""
     words = {
         int: phrase("an integer"),
         float: phrase("a number"),

@@ -30,7 +30,10 @@ class Parser:
 
     @classmethod
     def load_launch_extensions(cls) -> None:
-        """Import the modules that expose actions and substitutions: ours, and those named by entry points."""
+        """Import the modules that expose actions and substitutions.
+
+        They are ours, and the modules that entry points name.
+        """
         if Parser.extensions_loaded:
             return
         for _ in extensions.load(extensions.ACTIONS):
@@ -39,7 +42,10 @@ class Parser:
 
     @classmethod
     def load_parser_implementations(cls) -> None:
-        """Return the parsers: ours for XML and YAML, and those of packages with such an entry point."""
+        """Load the parsers.
+
+        They are ours for XML and YAML, and the parsers of packages with an entry point for one.
+        """
         if Parser.frontend_parsers is not None:
             return
         parsers: dict[str, type[Parser]] = {}
@@ -47,15 +53,15 @@ class Parser:
             parsers.setdefault(name, loaded)
         Parser.frontend_parsers = dict(sorted(parsers.items()))
 
-    # --- the interface for functions that read tags ---------------------------------------------------------
+    # --- interface for functions that read tags -------------------------------------------------------------
 
     def parse_action(self, entity: Entity) -> Action:
-        """Return the action of an entity."""
+        """Return the action that an entity describes."""
         self.load_launch_extensions()
         return instantiate_action(entity, self)
 
     def parse_substitution(self, value: str) -> list[Substitution]:
-        """Parse a text with ``$(...)`` in it into substitutions."""
+        """Parse a text that may contain ``$(...)`` into substitutions."""
         self.load_launch_extensions()
         return grammar.parse_substitution(value)
 
@@ -65,14 +71,14 @@ class Parser:
         return grammar.parse_if_substitutions(value)
 
     def escape_characters(self, value: str) -> str:
-        """Return the text with its escapes resolved."""
+        """Return the text with its backslash escapes resolved."""
         return grammar.replace_escaped_characters(value)
 
     def parse_description(self, entity: Entity) -> LaunchDescription:
         """Return the launch description of a root entity.
 
         Raises:
-            RuntimeError: LAUNCH109, the root is not called ``launch``.
+            RuntimeError: LAUNCH109, the root is not named ``launch``.
         """
         from linkwright.launch.model.description import LaunchDescription
 
@@ -83,7 +89,7 @@ class Parser:
             )
             raise error_at(entity.place, "LAUNCH109", message, ros_error=ros_error)
         deprecated = entity.get_attr("deprecated", optional=True)
-        entity.get_attr("version", optional=True)  # of the format, which the design of ROS 2 launch has there
+        entity.get_attr("version", optional=True)  # the format version in the ROS 2 launch design
         actions = []
         problems = []
         for child in entity.children:
@@ -99,21 +105,21 @@ class Parser:
         entity.assert_entity_completely_parsed()
         return LaunchDescription(actions, deprecated_reason=deprecated)
 
-    # --- which parser reads a file ----------------------------------------------------------------------------
+    # --- choice of the parser for a file ----------------------------------------------------------------------
 
     @classmethod
     def get_file_extensions(cls) -> set[str]:
-        """Return the file name extensions that this parser reads, without the first dot."""
+        """Return the file name extensions that this parser reads, without the leading dot."""
         return set()
 
     @classmethod
     def may_parse(cls, filename: str) -> bool:
-        """Return whether a file name is one for this parser."""
+        """Return whether a file name has an extension that this parser reads."""
         return any(filename.endswith("." + extension) for extension in cls.get_file_extensions())
 
     @classmethod
     def get_available_extensions(cls) -> list[str]:
-        """The names of the parsers."""
+        """Return the names of the available parsers."""
         return list(cls._parsers())
 
     @classmethod
@@ -124,7 +130,7 @@ class Parser:
 
     @classmethod
     def get_parser_from_extension(cls, extension: str) -> type[Parser]:
-        """The parser of a name."""
+        """Return the parser with this name."""
         warnings.warn(
             "Parser.get_parser_from_extension is deprecated, use Parser.get_parsers_from_filename instead",
             stacklevel=2,
@@ -136,24 +142,24 @@ class Parser:
 
     @classmethod
     def is_filename_valid(cls, filename: str) -> bool:
-        """Return whether a file name is one for any parser."""
+        """Return whether any parser reads files with this name."""
         return any(parser.may_parse(filename) for parser in cls._parsers().values())
 
     @classmethod
     def get_parsers_from_filename(cls, filename: str) -> list[type[Parser]]:
-        """The parsers for the name of a file."""
+        """Return the parsers that read files with this name."""
         return [parser for parser in cls._parsers().values() if parser.may_parse(filename)]
 
     @classmethod
     def get_file_extensions_from_parsers(cls) -> set[str]:
-        """The file name extensions that any parser reads."""
+        """Return the file name extensions that the available parsers read."""
         return {extension for parser in cls._parsers().values() for extension in parser.get_file_extensions()}
 
     @classmethod
     def load(cls, file: Any) -> tuple[Entity, Parser]:
         """Return the root entity of a path or open file, and its parser.
 
-        The file's name selects the parser; if it does not, each parser is tried.
+        The file's name selects the parser. If the name selects none, each parser is tried.
 
         Raises:
             InvalidFrontendLaunchFileError: LAUNCH107 to LAUNCH109 and XML codes, the errors in the file.
@@ -185,7 +191,7 @@ def read_file(file: Any) -> tuple[str, str]:
     """Return the name and text of a path or open file.
 
     Raises:
-        LinkwrightError: LAUNCH101 no such file, LAUNCH102 unreadable.
+        LinkwrightError: LAUNCH101, there is no such file; LAUNCH102, it cannot be read.
     """
     if isinstance(file, (str, bytes, os.PathLike)):
         from linkwright.launch.frontend.python_file import read_launch_file
@@ -197,7 +203,10 @@ def read_file(file: Any) -> tuple[str, str]:
 
 
 def _likely_diagnostics(name: str, text: str, errors: Sequence[Exception]) -> tuple[Diagnostic, ...]:
-    """Return the findings on a file that no parser can read, from the parser of the most likely language."""
+    """Return findings on a file that no parser can read.
+
+    They come from the parser for its most likely language.
+    """
     reports = [error.diagnostics for error in errors if isinstance(error, LinkwrightError)]
     looks_like_xml = text.lstrip().startswith("<")
     for diagnostics in reports:

@@ -1,4 +1,4 @@
-"""Python launch files: read them, run them, and report their errors."""
+"""Python launch files: reading them, running them, and reporting their errors."""
 
 from __future__ import annotations
 
@@ -33,11 +33,12 @@ _MODULE_NAME = "python_launch_file"
 
 
 def load_python_launch_file(path: Path) -> LaunchDescription:
-    """Run a launch file and return the description of its ``generate_launch_description()``.
+    """Run a launch file and return the description from its ``generate_launch_description()``.
 
     Raises:
-        LinkwrightError: LAUNCH101 no such file, LAUNCH102 unreadable, LAUNCH103 a syntax error, LAUNCH104 an
-            exception inside it, LAUNCH105 no such function in it, LAUNCH106 no description returned.
+        LinkwrightError: LAUNCH101, there is no such file; LAUNCH102, it cannot be read; LAUNCH103, a syntax error;
+            LAUNCH104, an exception inside it; LAUNCH105, it has no such function; LAUNCH106, the function returns no
+            description.
     """
     with not_reading():
         source = read_launch_file(path)
@@ -68,7 +69,10 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
 
 
 def _definition(function: Callable[..., Any], source: SourceText) -> Place:
-    """Return the line of a launch file that defines a function; the first line if another file defines it."""
+    """Return the line of a launch file that defines a function.
+
+    It is the first line if another file defines the function.
+    """
     code = getattr(function, "__code__", None)
     line = code.co_firstlineno if code is not None and code.co_filename == source.name else 1
     start = source.offset(line, 1)
@@ -86,12 +90,12 @@ def load_python_module(path: Path) -> ModuleType:
 
 
 def _run(source: SourceText, path: Path) -> ModuleType:
-    """Run a launch file at a path, which is its ``__file__``; messages name the user's file."""
+    """Run a launch file with ``__file__`` set to a path; messages name the user's own file."""
     try:
         code = compile(source.text, source.name, "exec", dont_inherit=True)
     except SyntaxError as error:
         raise as_ros_error(error, _syntax_diagnostic(error, source)) from error
-    except ValueError as error:  # a null byte, before Python 3.12
+    except ValueError as error:  # Python before 3.12 raises this for a null byte
         raise _error(
             "LAUNCH103",
             phrase("launch file '{path}' is not Python: {error}", path=display_path(source.name), error=foreign(error)),
@@ -102,16 +106,18 @@ def _run(source: SourceText, path: Path) -> ModuleType:
         exec(code, module.__dict__)  # noqa: S102 - a launch file is a program that the user runs
     except (Exception, SystemExit) as error:
         if isinstance(error, SystemExit) and not error.code:
-            raise  # a regular exit
+            raise  # the launch file exited normally
         raise explain(error, phrase("launch file '{path}'", path=display_path(source.name))) from error
     return module
 
 
 def read_launch_file(path: Path) -> SourceText:
-    """Return the text of a launch file of any kind, by the name of the user's own file (see `source_of`).
+    """Return the text of a launch file of any kind.
+
+    It is named after the user's own file (see `source_of`).
 
     Raises:
-        LinkwrightError: LAUNCH101 no such file, LAUNCH102 unreadable.
+        LinkwrightError: LAUNCH101, there is no such file; LAUNCH102, it cannot be read.
     """
     name = source_of(str(path))
     shown = display_path(name)

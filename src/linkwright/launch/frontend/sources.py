@@ -1,4 +1,4 @@
-"""Sources of launch descriptions."""
+"""Sources of launch descriptions: existing descriptions and launch files."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class LaunchDescriptionSource(Placed):
 
     Args:
         launch_description: the description, if it already exists.
-        location: otherwise the path of the file.
-        method: the way it is loaded, for listings.
+        location: the path of the file otherwise.
+        method: how the description is loaded, for listings.
     """
 
     def __init__(
@@ -41,19 +41,19 @@ class LaunchDescriptionSource(Placed):
 
     @property
     def location(self) -> str:
-        """The path as given, or its substitutions before it is known."""
+        """The path as given, or a listing of its substitutions until they are evaluated."""
         if self._known_location is not None:
             return self._known_location
         return " + ".join(map(repr, self._location))
 
     @property
     def location_path(self) -> Path | None:
-        """The path, once it is known; None for a description without a file."""
+        """The path, once it is known; None before that, or for a description without a file."""
         return Path.cwd() / self._known_location if self._known_location else None
 
     @property
     def method(self) -> str:
-        """The way the description is loaded."""
+        """How the description is loaded, for listings."""
         return self._method
 
     def get_launch_description(self, context: LaunchContext) -> LaunchDescription:
@@ -83,7 +83,7 @@ class LaunchDescriptionSource(Placed):
         return self._description
 
     def _get_launch_description(self, location: str) -> LaunchDescription:
-        """Read the file; classes of users override this by its name in ROS."""
+        """Read the file; users' classes override this method, which has its name in ROS."""
         raise NotImplementedError(f"{type(self).__name__} does not implement how to read '{location}'")
 
 
@@ -91,7 +91,7 @@ class PythonLaunchDescriptionSource(LaunchDescriptionSource):
     """A Python launch file.
 
     Args:
-        launch_file_path: its path; a list is joined without separators, as in ROS.
+        launch_file_path: the path of the file; a list is joined without separators, as in ROS.
     """
 
     def __init__(self, launch_file_path: SomeSubstitutionsType | Path) -> None:
@@ -105,9 +105,9 @@ class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
     """An XML or YAML launch file.
 
     Args:
-        launch_file_path: its path.
-        method: how it is read, for those who read about it.
-        parser: what reads it, by default the one for its name.
+        launch_file_path: the path of the file.
+        method: how the file is loaded, for listings.
+        parser: the parser to use, by default the parser for the file's name.
     """
 
     def __init__(
@@ -133,7 +133,7 @@ class XMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
     """An XML launch file.
 
     Args:
-        launch_file_path: its path.
+        launch_file_path: the path of the file.
     """
 
     def __init__(self, launch_file_path: SomeSubstitutionsType | Path) -> None:
@@ -150,7 +150,7 @@ class YAMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
     """A YAML launch file.
 
     Args:
-        launch_file_path: its path.
+        launch_file_path: the path of the file.
     """
 
     def __init__(self, launch_file_path: SomeSubstitutionsType | Path) -> None:
@@ -164,7 +164,7 @@ class YAMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
 
 
 class AnyLaunchDescriptionSource(LaunchDescriptionSource):
-    """A launch file of any language, which its name tells."""
+    """A launch file in any language, which is determined from its name or else by trying each."""
 
     def __init__(self, launch_file_path: SomeSubstitutionsType | Path) -> None:
         super().__init__(None, launch_file_path, "any launch file")

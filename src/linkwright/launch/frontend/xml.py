@@ -21,8 +21,8 @@ class Entity(MarkupEntity):
     """An element of a launch file.
 
     Args:
-        xml_element: the element; ``xml.etree.ElementTree`` is accepted too.
-        parent: the entity around it.
+        xml_element: the element; an element of ``xml.etree.ElementTree`` is accepted, too.
+        parent: the enclosing entity.
     """
 
     def __init__(self, xml_element: Any, *, parent: AnyEntity | None = None) -> None:
@@ -31,7 +31,7 @@ class Entity(MarkupEntity):
 
     @property
     def children(self) -> list[AnyEntity]:
-        """The child elements, all of which count as read from now on."""
+        """The child elements; reading this property marks all of them as read."""
         self._asked.update((element.tag, None) for element in self._element.elements())
         return [Entity(element, parent=self) for element in self._element.elements()]
 
@@ -39,16 +39,17 @@ class Entity(MarkupEntity):
         """Check that all attributes and child elements have been read.
 
         Raises:
-            ValueError: LAUNCH116, with the first unread one.
+            ValueError: LAUNCH116, an attribute or child element was not read.
         """
         tags = [element.tag for element in self._element.elements()]
         self._check_all_asked(tags, "element", "Unexpected nested tag(s) found in")
         self._check_all_asked(self._element.attributes, "attribute", "Unexpected attribute(s) found in")
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
-        """Return an attribute, or the child elements with a tag; see `linkwright.launch.model.markup.entity.Entity`.
+        """Return an attribute, or the child elements with a tag.
 
-        The value is converted to the type. An attribute ``NAME-sep`` splits it into a list.
+        See `linkwright.launch.model.markup.entity.Entity`. The value is converted to the type. If there is an attribute
+        ``NAME-sep``, it is the separator at which the value is split into a list.
         """
         self._asked[name] = None
         attributes = self._element.attributes
@@ -103,7 +104,7 @@ class Parser(AnyParser):
 
     @classmethod
     def get_file_extensions(cls) -> set[str]:
-        """Return the file name extensions, without the first dot."""
+        """Return the file name extensions, without the leading dot."""
         return {"launch.xml"}
 
 

@@ -27,8 +27,8 @@ class Entity(MarkupEntity):
 
     Args:
         element: the mapping or list.
-        type_name: the tag.
-        parent: the entity around it.
+        type_name: the tag of the entity.
+        parent: the enclosing entity.
     """
 
     def __init__(self, element: Any, type_name: str = "", *, parent: AnyEntity | None = None) -> None:
@@ -38,10 +38,10 @@ class Entity(MarkupEntity):
 
     @property
     def children(self) -> list[AnyEntity]:
-        """The child entities: the items of a list, or of the mapping's ``children``.
+        """The child entities: the items of the list, or of the mapping's ``children``.
 
         Raises:
-            TypeError: LAUNCH118, it is neither a list nor a mapping.
+            TypeError: LAUNCH118, the element is neither a list nor a mapping.
             ValueError: LAUNCH117, the mapping has no ``children``.
             RuntimeError: LAUNCH118, an item is not a mapping with one key.
         """
@@ -85,7 +85,7 @@ class Entity(MarkupEntity):
         """Check that all keys have been read.
 
         Raises:
-            ValueError: LAUNCH116, with the first unread one.
+            ValueError: LAUNCH116, a key was not read.
         """
         if isinstance(self._element, dict):
             self._check_all_asked(self._element, "key", "Unexpected key(s) found in")
@@ -95,9 +95,10 @@ class Entity(MarkupEntity):
             raise error_at(self.place, "LAUNCH116", message, ros_error=ValueError(text))
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
-        """Return an attribute, or the child entities with a name; see `linkwright.launch.model.markup.entity.Entity`.
+        """Return an attribute, or the child entities with a name.
 
-        YAML must read the value as the type, but a number or boolean is accepted for a string, as in newer ROS.
+        See `linkwright.launch.model.markup.entity.Entity`. The value must have the type under YAML's rules, but a
+        number or boolean is accepted where a string is expected, as in newer ROS versions.
         """
         self._asked[name] = None
         if not isinstance(self._element, (dict, list)):
@@ -147,7 +148,7 @@ class Parser(AnyParser):
         """Return the root entity of a path or open file, and a parser for it.
 
         Raises:
-            LinkwrightError: LAUNCH108, it is not YAML; LAUNCH109, it is not a mapping with one key.
+            LinkwrightError: LAUNCH108, the file is not YAML; LAUNCH109, it is not a mapping with one key.
         """
         name, text = read_file(file)
         tree = load(text, name)
@@ -161,11 +162,11 @@ class Parser(AnyParser):
 
     @classmethod
     def get_file_extensions(cls) -> set[str]:
-        """Return the file name extensions, without the first dot."""
+        """Return the file name extensions, without the leading dot."""
         return {"launch.yaml", "launch.yml"}
 
 
-# --- YAML with places -----------------------------------------------------------------------------------------
+# --- YAML with locations --------------------------------------------------------------------------------------
 
 
 class PlacedMapping(dict[Any, Any]):
@@ -175,7 +176,7 @@ class PlacedMapping(dict[Any, Any]):
 
 
 class _Loader(yaml.SafeLoader):
-    """Loads plain values; strings and mappings record their locations."""
+    """Loads plain values, and records the locations of strings and mappings."""
 
     launch_text: SourceText
 
@@ -184,7 +185,7 @@ class _Loader(yaml.SafeLoader):
         self._open_anchors: list[str | None] = []
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
-        """Compose a node, and reject an alias inside its own anchor, which would never end."""
+        """Compose a node, and reject an alias inside its own anchor, which would recurse endlessly."""
         event: Any = self.peek_event()  # type: ignore[no-untyped-call]  # of PyYAML
         anchor = getattr(event, "anchor", None)
         if isinstance(event, yaml.AliasEvent) and anchor in self._open_anchors:
@@ -219,10 +220,10 @@ _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
 
 
 def load(text: str, name: str) -> Any:
-    """Load the data of a YAML text, with strings as `PlacedText`.
+    """Load the data of a YAML text, with each string as a `PlacedText`.
 
     Raises:
-        LinkwrightError: LAUNCH108, it is not YAML.
+        LinkwrightError: LAUNCH108, the text is not YAML.
     """
     source = SourceText(name, text)
     loader = _Loader(text)

@@ -1,4 +1,4 @@
-"""The handlers of Python's `logging`, with formats for some loggers (``launch.logging.handlers``)."""
+"""The handlers of `logging` with formats for individual loggers (``launch.logging.handlers``)."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ _CLASSES: dict[str, type[Any]] = {}
 
 
 class ForEachLogger:
-    """A handler with separate formatters for some loggers."""
+    """A handler with separate formatters for individual loggers."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self._formatters: dict[str, logging.Formatter] = {}
 
     def setFormatterFor(self, logger: logging.Logger, formatter: logging.Formatter) -> None:  # noqa: N802 - ROS's name
-        """Set the formatter for the lines of a logger."""
+        """Set the formatter for a logger's lines."""
         self._formatters[logger.name] = formatter
 
     def unsetFormatterFor(self, logger: logging.Logger) -> None:  # noqa: N802 - ROS's name
-        """Remove the formatter for the lines of a logger."""
+        """Remove the formatter for a logger's lines."""
         self._formatters.pop(logger.name, None)
 
     def format(self, record: logging.LogRecord) -> str:
-        """Format a line."""
+        """Format a log record as a line."""
         record.msg, record.args = record.getMessage(), None
         formatter = self._formatters.get(record.name)
         if formatter is not None:
@@ -34,7 +34,7 @@ class ForEachLogger:
 
 
 class Handler(ForEachLogger, logging.Handler):
-    """A handler that users derive from."""
+    """The base class for users' handlers."""
 
 
 class StreamHandler(ForEachLogger, logging.StreamHandler):  # type: ignore[type-arg]  # not generic at run time
@@ -46,11 +46,13 @@ class FileHandler(ForEachLogger, logging.FileHandler):
 
 
 class WatchedFileHandler(ForEachLogger, logging.handlers.WatchedFileHandler):
-    """Writes lines to a file that other programs may move."""
+    """Writes lines to a file, which is reopened if another program moves it."""
 
 
 def handler_class(name: str) -> type[Any]:
-    """The class of a name in `logging.handlers`, extended; for use as the ``__getattr__`` of a module.
+    """Return the extended form of a class in `logging.handlers`.
+
+    This is used as the ``__getattr__`` of a module.
 
     Raises:
         AttributeError: there is no such handler.

@@ -1,7 +1,7 @@
 """The loggers of ``launch.logging``: Python's loggers with the format of launch lines.
 
-They are separate from the launcher's own log (`linkwright.hosting.launch_log`), but have the same format and follow the
-same environment variables. A file is opened with its first line.
+They are separate from the launcher's own log (`linkwright.hosting.launch_log`), but they have the same format and use
+the same environment variables. A file is opened when its first line is written.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ class _ScreenHandler(StreamHandler):
 
 
 class _MainFile(Handler):
-    """Writes lines to the main file, which is opened with the first of them."""
+    """Writes lines to the main log file, which is opened when the first line is written."""
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Write a line."""
+        """Write the line of a log record."""
         handler = launch_config.get_log_file_handler(launch_config.log_file_name)
         if handler not in logging.getLogger(record.name).handlers:
             handler.handle(record)
@@ -62,17 +62,17 @@ def _make_unique_log_dir(*, base_path: str) -> str:
 
 
 def _renew_latest_log_dir(*, log_dir: str) -> bool:  # noqa: ARG001 - ROS's tests replace a function with this signature
-    return True  # the function that creates the folder has done it
+    return True  # `new_log_folder` has already updated it
 
 
 class LaunchConfig:
-    """The configuration of launch's logging."""
+    """The configuration of the loggers."""
 
     def __init__(self) -> None:
         self.reset()
 
     def reset(self) -> None:
-        """Reset the configuration."""
+        """Reset the configuration to its defaults."""
         self._log_dir: str | None = None
         self.log_file_name = MAIN_LOG
         self.file_handlers: dict[str, logging.Handler] = {}
@@ -87,7 +87,7 @@ class LaunchConfig:
 
     @property
     def level(self) -> int:
-        """The lowest level that is logged."""
+        """The minimum level that is logged."""
         return logging.root.getEffectiveLevel()
 
     @level.setter
@@ -97,7 +97,7 @@ class LaunchConfig:
 
     @property
     def log_dir(self) -> str:
-        """The folder of this launch's files, created on first use."""
+        """The folder of this launch's log files, created on first use."""
         if self._log_dir is None:
             module = _public_module()
             self._log_dir = module._make_unique_log_dir(base_path=_get_logging_directory())
@@ -119,13 +119,13 @@ class LaunchConfig:
         self._log_dir = None if new_log_dir is None else str(new_log_dir)
 
     def share(self, folder: Path) -> None:
-        """Use the folder of the running launch, unless log files already exist."""
+        """Use the log folder of the running launch, unless log files already exist."""
         if not self.file_handlers:
             self._log_dir = str(folder)
 
     @property
     def log_handler_factory(self) -> Callable[..., logging.Handler]:
-        """The factory of file handlers, which takes a path and ``encoding``."""
+        """The factory of file handlers, which is called with a path and ``encoding``."""
         return self._log_handler_factory or (FileHandler if os.name == "nt" else WatchedFileHandler)
 
     @log_handler_factory.setter
@@ -133,14 +133,17 @@ class LaunchConfig:
         self._log_handler_factory = factory
 
     def set_screen_format(self, screen_format: str | None, *, screen_style: Any = None) -> None:
-        """Set the format of lines on the screen: ``default``, ``default_with_timestamp``, or a format."""
+        """Set the format of lines on the screen.
+
+        It is ``default``, ``default_with_timestamp``, or a format string.
+        """
         override = os.environ.get("OVERRIDE_LAUNCH_SCREEN_FORMAT")
         self.screen_formatter = _formatter(screen_format, screen_style, override, FORMATS, "screen")
         if self.screen_handler is not None:
             self.screen_handler.setFormatter(self.screen_formatter)
 
     def set_log_format(self, log_format: str | None, *, log_style: Any = None) -> None:
-        """Set the format of lines in files: ``default``, or a format."""
+        """Set the format of lines in log files: ``default``, or a format string."""
         override = os.environ.get("OVERRIDE_LAUNCH_LOG_FORMAT")
         self.file_formatter = _formatter(log_format, log_style, override, FILE_FORMATS, "log")
         for handler in self.file_handlers.values():
@@ -154,11 +157,11 @@ class LaunchConfig:
         return self.screen_handler
 
     def get_log_file_path(self, file_name: str = MAIN_LOG) -> str:
-        """Return the path of a file."""
+        """Return the path of a log file."""
         return str(Path(self.log_dir) / file_name)
 
     def get_log_file_handler(self, file_name: str = MAIN_LOG) -> logging.Handler:
-        """Return the handler for a file, the same on each call."""
+        """Return the handler for a log file; repeated calls return the same handler."""
         if file_name not in self.file_handlers:
             handler = self.log_handler_factory(self.get_log_file_path(file_name), encoding="utf-8")
             handler.setFormatter(self.file_formatter)
@@ -181,7 +184,10 @@ def _formatter(
 
 
 def _public_module() -> Any:
-    """Return the public module in which users and ROS's tests replace the functions that create folders."""
+    """Return the public module with the functions that create folders.
+
+    Users and ROS's tests replace the functions in this module.
+    """
     return sys.modules.get("launch.logging") or sys.modules[__name__]
 
 
@@ -189,7 +195,10 @@ launch_config = LaunchConfig()
 
 
 def get_logger(name: str | None = None) -> logging.Logger:
-    """Return a logger for the screen and the main file, with the format of the launcher's lines."""
+    """Return a logger that writes to the screen and the main log file.
+
+    It has the format of the launcher's lines.
+    """
     logger = logging.getLogger(name)
     for handler in (launch_config.get_screen_handler(), launch_config.main_file):
         if handler not in logger.handlers and not _shown_above(logger, handler):
@@ -200,7 +209,7 @@ def get_logger(name: str | None = None) -> logging.Logger:
 
 
 def _shown_above(logger: logging.Logger, handler: logging.Handler) -> bool:
-    """Return whether a parent logger already shows its lines."""
+    """Return whether a parent logger already passes the logger's lines to a handler."""
     above: logging.Logger | None = logger if logger.propagate else None
     while above is not None and above.parent is not None:
         above = above.parent
@@ -210,7 +219,7 @@ def _shown_above(logger: logging.Logger, handler: logging.Handler) -> bool:
 
 
 def log_launch_config(*, logger: logging.Logger = logging.root) -> None:
-    """Log the folder of the files and the lowest level."""
+    """Log the folder of the log files and the minimum level."""
     if launch_config.file_handlers:
         logger.info("All log files can be found below %s", launch_config.log_dir)
     logger.info("Default logging verbosity is set to %s", logging.getLevelName(logging.root.getEffectiveLevel()))
@@ -220,11 +229,11 @@ def get_output_loggers(process_name: str, output_config: Any) -> tuple[logging.L
     """Return the loggers for the stdout and stderr of a process.
 
     Args:
-        process_name: the process.
-        output_config: see ``output`` of `linkwright.launch.model.actions.ExecuteProcess`.
+        process_name: the name of the process.
+        output_config: the destinations; see ``output`` of `linkwright.launch.model.actions.ExecuteProcess`.
 
     Raises:
-        ValueError: there is no such output.
+        ValueError: there is no such destination.
     """
     config = _normalize_output_configuration(output_config)
     loggers = []
@@ -273,7 +282,10 @@ def _normalize_output_configuration(config: Any) -> dict[str, set[str]]:
 
 
 def reset() -> None:
-    """Remove the handlers and levels of all loggers that were created here, and reset the configuration."""
+    """Remove the handlers and levels of all loggers, and reset the configuration.
+
+    Only loggers created in this module are affected.
+    """
     for logger in list(logging.root.manager.loggerDict.values()):
         handlers = getattr(logger, "handlers", ())
         kept = [handler for handler in handlers if not isinstance(handler, ForEachLogger)]

@@ -1,1 +1,1 @@
-"""The elements of launch descriptions; nothing here reads a file or starts a process."""
+"""The elements of launch descriptions; this package reads no files and starts no processes."""

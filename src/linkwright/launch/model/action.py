@@ -1,4 +1,4 @@
-"""Actions: the entities that do something."""
+"""Actions, the entities that do something when they are visited."""
 
 from __future__ import annotations
 
@@ -19,20 +19,22 @@ class Action(LaunchDescriptionEntity):
     """An entity that does something when it is visited and its condition holds.
 
     Args:
-        condition: determines at the visit whether `execute` runs.
+        condition: determines at each visit whether `execute` runs.
     """
 
     def __init__(self, *, condition: Condition | None = None, **unknown: Any) -> None:
-        for name in unknown:  # names the user's class, not this one
+        for name in unknown:  # the message names the user's class, not this one
             raise TypeError(f"{type(self).__name__}() got an unexpected keyword argument '{name}'")
         self._condition = condition
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Return the class and the keyword arguments for a tag of an XML or YAML file: here its ``if`` or ``unless``.
+        """Return the class and keyword arguments for an XML or YAML tag.
+
+        This base class reads ``if`` or ``unless``.
 
         Raises:
-            RuntimeError: LAUNCH118, it has both.
+            RuntimeError: LAUNCH118, the tag has both.
         """
         return cls, parse_condition(entity, parser)
 
@@ -42,11 +44,11 @@ class Action(LaunchDescriptionEntity):
         return getattr(self, "_condition", None)
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return the child entities of an action without a condition."""
+        """Return the child entities if the action has no condition, else nothing."""
         return list(self.get_sub_entities()) if self.condition is None else []
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return the child entities of an action with a condition."""
+        """Return the child entities if the action has a condition, else nothing."""
         if self.condition is None:
             return []
         return [("Conditionally included: " + str(self.condition), list(self.get_sub_entities()))]
@@ -60,7 +62,10 @@ class Action(LaunchDescriptionEntity):
         return None if following is None else as_entities(following)
 
     def _emit_completion(self, context: LaunchContext) -> None:
-        """Emit the completion event if there is a handler for it; if the action has a future, when that is done."""
+        """Emit the completion event if there is a handler for it.
+
+        If the action has a future, the event is emitted when the future is done.
+        """
         from linkwright.launch.model.events import ExecutionComplete
 
         event = ExecutionComplete(action=self)
@@ -73,19 +78,21 @@ class Action(LaunchDescriptionEntity):
             future.add_done_callback(lambda _: context.emit_event_sync(event))
 
     def execute(self, context: LaunchContext) -> Any:
-        """Execute the action; may return entities to visit next."""
+        """Execute the action, and optionally return entities to visit next."""
         return None
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """Return the child entities, to find the declared arguments."""
+        """Return the child entities, among which declared arguments are searched."""
         return []
 
 
 def parse_condition(entity: Entity, parser: Parser) -> dict[str, Any]:
-    """Return the keyword argument ``condition`` for the ``if`` or ``unless`` of a tag, if it has one.
+    """Return the keyword argument ``condition`` of a tag.
+
+    It comes from ``if`` or ``unless``, if the tag has one.
 
     Raises:
-        RuntimeError: LAUNCH118, it has both.
+        RuntimeError: LAUNCH118, the tag has both.
     """
     conditions = (("if", IfCondition), ("unless", UnlessCondition))
     given = {kind: entity.get_attr(name, optional=True) for name, kind in conditions}

@@ -1,4 +1,4 @@
-"""Conditions on actions."""
+"""Conditions that determine whether actions run."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _FALSE = ("false", "0")
 
 
 class InvalidConditionExpressionError(Exception):
-    """The expression of a condition is neither true nor false.
+    """Raised when the expression of a condition is neither true nor false.
 
     Args:
-        given: its value and the accepted true and false values; or one text.
+        given: the expression's value and the accepted true and false values; or only a text.
     """
 
     def __init__(self, *given: Any) -> None:
@@ -39,25 +39,25 @@ class Condition(Placed):
     """Determines whether a visited action runs.
 
     Args:
-        predicate: called with the launch context; if omitted, the action never runs.
+        predicate: called with the launch context; without it, the condition never holds.
     """
 
     def __init__(self, *, predicate: Callable[[LaunchContext], bool] | None = None) -> None:
         self._predicate = predicate
 
     def describe(self) -> str:
-        """Return a short form for listings."""
+        """Return a short text for listings."""
         return f"{type(self).__name__}()"
 
     def __str__(self) -> str:
         return self.describe()
 
     def _predicate_func(self, context: LaunchContext) -> bool:
-        """Evaluate, by ROS's private name, which some launch files call."""
+        """Evaluate the condition, under ROS's private name, which some launch files call."""
         return self.evaluate(context)
 
     def evaluate(self, context: LaunchContext) -> bool:
-        """Return whether the action runs."""
+        """Return whether the condition holds."""
         if self._predicate is None:
             return False
         try:
@@ -69,7 +69,7 @@ class Condition(Placed):
 
 
 class _OnExpression(Condition):
-    """The base of conditions on an expression."""
+    """The base class of conditions on an expression."""
 
     def __init__(self, predicate_expression: Any, wanted: bool) -> None:
         expression = normalize_to_list_of_substitutions(_text(predicate_expression))
@@ -77,33 +77,39 @@ class _OnExpression(Condition):
         self._expression = expression
 
     def describe(self) -> str:
-        """The expression."""
+        """Return a text with the expression."""
         return f"{type(self).__name__}({describe(self._expression)})"
 
 
 class IfCondition(_OnExpression):
-    """The action runs if the expression is true."""
+    """A condition that holds if an expression is true."""
 
     def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
         super().__init__(predicate_expression, True)
 
 
 class UnlessCondition(_OnExpression):
-    """The action runs if the expression is false."""
+    """A condition that holds if an expression is false."""
 
     def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
         super().__init__(predicate_expression, False)
 
 
 class LaunchConfigurationEquals(Condition):
-    """The action runs if a launch configuration has a value; None asks whether it is unset."""
+    """A condition that holds if a launch configuration has the given value.
+
+    The value None means that it is unset.
+    """
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
         super().__init__(predicate=_equals(launch_configuration_name, expected_value))
 
 
 class LaunchConfigurationNotEquals(Condition):
-    """The action runs if a launch configuration has another value; None asks whether it is set."""
+    """A condition that holds unless a launch configuration has the given value.
+
+    The value None means that it is unset.
+    """
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
         equals = _equals(launch_configuration_name, expected_value)
@@ -126,7 +132,7 @@ def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bo
     """Evaluate an expression: ``true`` or ``1``, ``false`` or ``0``, in upper or lower case.
 
     Raises:
-        InvalidConditionExpressionError: for any other text.
+        InvalidConditionExpressionError: the expression is any other text.
     """
     text = perform_substitutions(context, normalize_to_list_of_substitutions(_text(expression)))
     folded = text.strip().lower()

@@ -1,4 +1,4 @@
-"""The context of a launch: configurations, environment, locals, event handlers."""
+"""The context of a launch: configurations, environment, locals and event handlers."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ if TYPE_CHECKING:
 
 
 class Performed(Protocol):
-    """The interface of substitutions for the context."""
+    """The interface of substitutions as the context uses it."""
 
     place: Place | None
 
     def perform(self, context: LaunchContext) -> str:
-        """The text."""
+        """Return the text of the substitution."""
 
 
 class Handler(Protocol):
-    """The interface of event handlers for the context."""
+    """The interface of event handlers as the context uses it."""
 
     def matches(self, event: Any) -> bool:
         """Return whether the handler accepts the event."""
@@ -41,10 +41,10 @@ class Handler(Protocol):
 
 
 class EventQueue:
-    """The queue of events.
+    """The queue of events that the launch has yet to handle.
 
     Attributes:
-        on_put: called when one is added.
+        on_put: called when an event is added.
     """
 
     def __init__(self) -> None:
@@ -52,7 +52,7 @@ class EventQueue:
         self.on_put: Callable[[], None] | None = None
 
     def put_nowait(self, event: Event) -> None:
-        """Add an event."""
+        """Add an event to the queue."""
         self._events.append(event)
         if self.on_put is not None:
             self.on_put()
@@ -61,7 +61,7 @@ class EventQueue:
         """Remove and return the oldest event.
 
         Raises:
-            asyncio.QueueEmpty: there is none.
+            asyncio.QueueEmpty: the queue is empty.
         """
         if not self._events:
             raise asyncio.QueueEmpty
@@ -77,7 +77,7 @@ class EventQueue:
 
 
 class Locals:
-    """The locals as read-only attributes."""
+    """The locals of a launch context as read-only attributes."""
 
     def __init__(self, values: dict[str, Any]) -> None:
         object.__setattr__(self, "_values", values)
@@ -97,9 +97,9 @@ class LaunchContext:
     """The state that actions and substitutions read and change.
 
     Attributes:
-        argv: the arguments the launch was started with.
+        argv: the command-line arguments with which the launch was started.
         launch_configurations: name -> value of the launch configurations in scope.
-        environment: the environment variables of this process, as in ROS: changes are visible to processes started
+        environment: the environment variables of this process, as in ROS; changes are visible to processes started
             later and to ``$(env ...)`` in xacro files.
     """
 
@@ -120,7 +120,7 @@ class LaunchContext:
         self._session: RunningLaunch | None = None
 
     def perform_substitution(self, substitution: Performed) -> str:
-        """Evaluate a substitution; an error names its location."""
+        """Evaluate a substitution; an error includes the substitution's location."""
         try:
             return substitution.perform(self)
         except LinkwrightError as error:
@@ -143,7 +143,7 @@ class LaunchContext:
         return merged
 
     def extend_locals(self, extensions: dict[str, Any]) -> None:
-        """Set locals."""
+        """Set locals in the current scope."""
         self._locals[-1].update(extensions)
 
     def remove_locals(self, names: Iterable[str]) -> None:
@@ -161,7 +161,7 @@ class LaunchContext:
         self._locals.append({})
 
     def pop_locals(self) -> None:
-        """Close a scope of locals.
+        """Close the innermost scope of locals.
 
         Raises:
             RuntimeError: no scope is open.
@@ -177,7 +177,7 @@ class LaunchContext:
         self._configurations_stack.append(dict(self.launch_configurations))
 
     def pop_launch_configurations(self) -> None:
-        """Close the innermost scope of launch configurations, and restore those before it.
+        """Close the innermost scope of launch configurations, and restore the previous ones.
 
         Raises:
             RuntimeError: no scope is open.
@@ -193,7 +193,7 @@ class LaunchContext:
         self._environment_stack.append(dict(self.environment))
 
     def pop_environment(self) -> None:
-        """Close the innermost scope of environment variables, and restore those before it.
+        """Close the innermost scope of environment variables, and restore the previous ones.
 
         Raises:
             RuntimeError: no scope is open.
@@ -203,7 +203,7 @@ class LaunchContext:
         self.reset_environment(self._environment_stack.pop())
 
     def reset_environment(self, environment: dict[str, str] | None = None) -> None:
-        """Replace the environment, by default with the one at the creation of the context."""
+        """Replace the environment, by default with the environment at the creation of the context."""
         if environment is None:
             environment = self._initial_environment
         for name in [name for name in self.environment if name not in environment]:
@@ -211,7 +211,7 @@ class LaunchContext:
         self.environment.update(environment)
 
     def snapshot(self) -> LaunchContext:
-        """Return a context with the current configurations, for an action to retry later."""
+        """Return a context with the current configurations, to retry an action later."""
         copy = LaunchContext(argv=self.argv, noninteractive=self.noninteractive)
         copy.launch_configurations.update(self.launch_configurations)
         copy._globals = dict(self._globals)
@@ -222,7 +222,7 @@ class LaunchContext:
         copy._event_handlers = self._event_handlers
         return copy
 
-    # Users' entities and tests call these by their names in ROS.
+    # aliases with the private names in ROS, which users' entities and tests call
     _push_locals = push_locals
     _pop_locals = pop_locals
     _push_launch_configurations = push_launch_configurations
@@ -240,7 +240,7 @@ class LaunchContext:
 
     @property
     def is_running(self) -> bool:
-        """Whether a launch runs in this context."""
+        """Whether a launch is running in this context."""
         return self._session is not None
 
     def detach(self) -> None:
@@ -254,7 +254,7 @@ class LaunchContext:
         """The running launch.
 
         Raises:
-            RuntimeError: no launch runs in this context.
+            RuntimeError: no launch is running in this context.
         """
         if self._session is None:
             raise RuntimeError("no launch runs in this context")
@@ -270,7 +270,7 @@ class LaunchContext:
 
         Args:
             name: the name of the source.
-            level: as in ``logging``.
+            level: the level, a number as in ``logging``.
             text: the line.
         """
         if self._session is not None:
@@ -296,14 +296,14 @@ class LaunchContext:
         return Path(launch_config.log_dir)
 
     def warn(self, warning: Diagnostic) -> None:
-        """Warn the user."""
+        """Report a warning to the user."""
         if self._session is None:
             print_diagnostics([warning], sys.stderr)
         else:
             self._session.log.diagnostics([warning])
 
     def remark(self, about: object, findings: Sequence[Diagnostic]) -> None:
-        """Report findings about a robot description, here and in the viewer."""
+        """Report findings about a robot description, both here and in the viewer."""
         if self._session is None:
             print_diagnostics(findings, sys.stderr)
         else:
@@ -311,7 +311,7 @@ class LaunchContext:
 
     @property
     def is_shutdown(self) -> bool:
-        """Return whether the launch is ending."""
+        """Whether the launch is ending."""
         return self._is_shutdown or (self._session is not None and self._session.ending)
 
     def _set_is_shutdown(self, state: bool) -> None:
@@ -319,7 +319,7 @@ class LaunchContext:
 
     @property
     def asyncio_loop(self) -> asyncio.AbstractEventLoop | None:
-        """The loop that the launch runs on."""
+        """The event loop on which the launch runs, or None."""
         return self._session.loop if self._session is not None and self._session.loop else self._loop
 
     def _set_asyncio_loop(self, loop: asyncio.AbstractEventLoop | None) -> None:
@@ -331,17 +331,17 @@ class LaunchContext:
             self._session.hold(completion_future)
 
     def register_event_handler(self, event_handler: Handler, append: bool = False) -> None:
-        """Register a handler for future events, before or after those registered earlier."""
+        """Register a handler for future events, before or after the handlers registered earlier."""
         if append:
             self._event_handlers.append(event_handler)
         else:
             self._event_handlers.appendleft(event_handler)
 
     def unregister_event_handler(self, event_handler: Handler) -> None:
-        """Unregister a handler.
+        """Unregister an event handler.
 
         Raises:
-            ValueError: it is not registered.
+            ValueError: the handler is not registered.
         """
         self._event_handlers.remove(event_handler)
 
@@ -350,13 +350,13 @@ class LaunchContext:
         return any(True for _ in self.handlers_of(event))
 
     def handlers_of(self, event: Event) -> Iterator[Handler]:
-        """Return the handlers that accept the event, in order."""
+        """Return the handlers that accept an event, in the order in which they are called."""
         return (handler for handler in tuple(self._event_handlers) if handler.matches(event))
 
     def emit_event_sync(self, event: Event) -> None:
-        """Put an event into the queue."""
+        """Add an event to the queue."""
         self._event_queue.put_nowait(event)
 
     async def emit_event(self, event: Event) -> None:
-        """Put an event into the queue."""
+        """Add an event to the queue."""
         self._event_queue.put_nowait(event)

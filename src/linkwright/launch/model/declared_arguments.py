@@ -17,30 +17,34 @@ _DEEPEST = 100
 def declared_arguments(
     entities: Iterable[LaunchDescriptionEntity], conditional_inclusion: bool = False
 ) -> list[DeclareLaunchArgument]:
-    """Return the arguments that entities, their children and their includes declare, as far as known.
+    """Return the arguments that entities, their children and their includes declare.
 
-    The first declaration of a name counts. Those behind a condition are marked by ``conditionally_included``.
-    Declarations after a `ResetLaunchConfigurations` cannot be given from outside, and do not count.
+    Descriptions that are not yet known are not searched. The first declaration of a name counts. Declarations behind a
+    condition are marked by ``conditionally_included``. Declarations after a `ResetLaunchConfigurations` cannot be given
+    from outside and are omitted.
     """
     return list(_Declared.by(entities, conditional=conditional_inclusion).arguments.values())
 
 
 def undeclared_names(entities: Iterable[LaunchDescriptionEntity], names: Iterable[str]) -> list[str]:
-    """Return the names that a description does not declare; none if parts of it are not known yet."""
+    """Return the names that a description does not declare.
+
+    The result is empty if parts of the description are not yet known.
+    """
     found = _Declared.by(entities)
     return [] if found.incomplete else [name for name in names if name not in found.names]
 
 
 class _TooDeepError(Exception):
-    """Entities are nested deeper than the search goes."""
+    """Raised when entities are nested more deeply than the search descends."""
 
 
 class _Declared:
-    """The declarations of entities.
+    """The declarations found in entities.
 
     Attributes:
         arguments: name -> declaration, for arguments that can be given from outside.
-        names: all names, including those that an including file gives.
+        names: all declared names, including names that an including file sets.
         incomplete: whether an included file cannot be searched.
     """
 
@@ -51,7 +55,7 @@ class _Declared:
 
     @classmethod
     def by(cls, entities: Iterable[LaunchDescriptionEntity], *, conditional: bool = False) -> _Declared:
-        """Collect the declarations of entities and their descendants."""
+        """Return the declarations of entities and their descendants."""
         found = cls()
         with suppress(_TooDeepError):
             found.collect(entities, conditional=conditional)
@@ -69,12 +73,12 @@ class _Declared:
 
         Args:
             entities: the entities to search.
-            conditional: whether they are visited under a condition.
-            set_outside: the names that an including file gives.
+            conditional: whether the entities are visited under a condition.
+            set_outside: the names that an including file sets.
             depth: the depth of the entities, from 1.
 
         Raises:
-            _TooDeepError: they are nested too deeply.
+            _TooDeepError: the entities are nested too deeply.
         """
         if depth > _DEEPEST:
             self.incomplete = True
@@ -95,7 +99,7 @@ class _Declared:
                 self.incomplete |= entity.hides_entities()
             except LinkwrightError:
                 self.incomplete = True
-                continue  # an included file that cannot be read is reported when it is visited
+                continue  # the visit to the include will report that the file cannot be read
             self.collect(below, conditional=conditional, set_outside=inside, depth=depth + 1)
             for _, some in maybe:
                 self.collect(some, conditional=True, set_outside=inside, depth=depth + 1)

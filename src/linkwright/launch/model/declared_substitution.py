@@ -1,4 +1,4 @@
-"""Substitutions that are declared: a name, arguments and a function.
+"""Substitutions that are declared by a name, arguments and a function.
 
 A class declares its tag ``$(tag ...)``, its form in listings and its arguments::
 
@@ -8,7 +8,8 @@ A class declares its tag ``$(tag ...)``, its form in listings and its arguments:
 
         def perform(self, context: LaunchContext) -> str: ...
 
-Its constructor, its properties, its parser for XML and YAML, and the check of the number of arguments follow from that.
+From this declaration follow its constructor, its properties, its parser for XML and YAML, and the check of the number
+of arguments.
 """
 
 from __future__ import annotations
@@ -31,7 +32,10 @@ else:
     C = TypeVar("C")
 
     def dataclass_transform(**_: Any) -> Callable[[C], C]:
-        """Tell type checkers that the constructor is generated from the fields; no effect at run time."""
+        """Tell type checkers that the constructor is generated from the fields.
+
+        This has no effect at run time.
+        """
         return lambda decorated: decorated
 
 
@@ -39,11 +43,11 @@ _REQUIRED = object()
 
 
 class Texts:
-    """An argument of texts and substitutions to join.
+    """An argument that consists of texts and substitutions to be joined.
 
     Args:
         default: the default value.
-        kw_only: whether Python code passes it only by name.
+        kw_only: whether Python code must pass it as a keyword argument.
         read: converts a value to a list of substitutions.
     """
 
@@ -64,11 +68,11 @@ class Texts:
 
     @property
     def is_required(self) -> bool:
-        """Whether it is required."""
+        """Whether the argument is required."""
         return self.default is _REQUIRED
 
     def __get__(self, owner: Any, kind: type | None = None) -> list[Substitution]:
-        """The argument, as substitutions."""
+        """Return the argument's value as substitutions."""
         if owner is None:
             return self  # type: ignore[return-value]  # the declaration, read from the class
         texts: list[Substitution] = owner.__dict__[self.name]
@@ -79,7 +83,7 @@ class Texts:
         owner.__dict__[self.name] = self.read(value)
 
     def describe(self, value: Any) -> str:
-        """Return the argument for listings."""
+        """Return a value of the argument in the form of listings."""
         return describe(value)
 
 
@@ -87,7 +91,7 @@ class OptionalTexts(Texts):
     """A `Texts` argument that may be None."""
 
     if TYPE_CHECKING:
-        # The attribute of an instance may be None; mypy sees only the different type of the method.
+        # The attribute of an instance may be None; mypy sees only that the method has a different type.
         def __get__(self, owner: Any, kind: type | None = None) -> list[Substitution] | None:  # type: ignore[override]  # see above
             ...
 
@@ -96,12 +100,12 @@ class OptionalTexts(Texts):
         owner.__dict__[self.name] = None if value is None else self.read(value)
 
     def describe(self, value: Any) -> str:
-        """Return the argument for listings."""
+        """Return a value of the argument in the form of listings."""
         return describe(value or [])
 
 
 class AnyTexts(Texts):
-    """A `Texts` argument that also accepts other values that `read` converts."""
+    """A `Texts` argument that also accepts other values, which `read` converts."""
 
     def __set__(self, owner: Any, value: Any) -> None:
         """Check, normalize and store a value."""
@@ -122,7 +126,7 @@ class TextLists(Texts):
     def __init__(self, *, default: Any = _REQUIRED, read: Callable[[Any], Any] = iter) -> None:
         super().__init__(default=default, read=lambda value: list(map(normalize_to_list_of_substitutions, read(value))))
 
-    # Its values are lists of those of `Texts`; no code uses both through the type of the latter.
+    # The values are lists of `Texts` values, but no code accesses both kinds through the type `Texts`.
     if TYPE_CHECKING:
 
         def __get__(self, owner: Any, kind: type | None = None) -> list[list[Substitution]]:  # type: ignore[override]  # see above
@@ -133,17 +137,17 @@ class TextLists(Texts):
         owner.__dict__[self.name] = self.read(value)
 
     def describe(self, value: Any) -> str:
-        """Return the argument for listings."""
+        """Return a value of the argument in the form of listings."""
         return ", ".join(map(describe, value))
 
 
 @dataclass_transform(field_specifiers=(Texts, OptionalTexts, AnyTexts, AnyOptionalTexts, TextLists))
 class DeclaredSubstitution(Substitution):
-    """The base of declared substitutions.
+    """The base class of declared substitutions.
 
     Class arguments:
-        tag: the name in ``$(name ...)``; slashes separate several; empty for Python code only.
-        shown: its form in listings, with the arguments in braces and its class as ``{kind}``; by default the class and
+        tag: the name in ``$(name ...)``; several names are separated by slashes; empty for use in Python code only.
+        shown: the form in listings, with the arguments in braces and the class as ``{kind}``; by default the class and
             all arguments.
     """
 
@@ -167,7 +171,7 @@ class DeclaredSubstitution(Substitution):
 
     @classmethod
     def parse(cls, data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
-        """Return the class and the keyword arguments.
+        """Return the class and its keyword arguments for the arguments in ``$(name ...)``.
 
         Args:
             data: the arguments, each a list of substitutions.
@@ -184,11 +188,14 @@ class DeclaredSubstitution(Substitution):
 
     @classmethod
     def wrong_count(cls, expected: str, given: int) -> Exception:  # noqa: ARG003 - for classes that use it
-        """Return the exception for a wrong number of arguments; ROS raises various classes."""
+        """Return the exception for a wrong number of arguments.
+
+        As in ROS, its class differs between substitutions.
+        """
         return TypeError(f"{cls._tag} substitution expects {expected}")
 
     def describe(self) -> str:
-        """Return its class and arguments."""
+        """Return a text with the class and the arguments."""
         texts = {argument.name: argument.describe(vars(self)[argument.name]) for argument in self._arguments}
         if self._shown is None:
             return f"{type(self).__name__}({', '.join(texts.values())})"
@@ -196,7 +203,10 @@ class DeclaredSubstitution(Substitution):
 
 
 def _constructor(cls: type[DeclaredSubstitution]) -> Callable[..., None]:
-    """Generate a constructor with the declared arguments, so that Python checks them and editors know them."""
+    """Generate a constructor with the declared arguments.
+
+    It lets Python check them and editors know them.
+    """
     names: dict[str, Any] = {}
     parameters = ["self"]
     for argument in sorted(cls._arguments, key=lambda each: each.kw_only):

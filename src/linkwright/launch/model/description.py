@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 
 class LaunchDescription(LaunchDescriptionEntity):
-    """Entities in the order in which they are visited.
+    """A list of entities in the order in which they are visited.
 
     Args:
         initial_entities: the entities.
-        deprecated_reason: the reason for its deprecation, which is logged at its visit.
+        deprecated_reason: why the description is deprecated, which is logged when it is visited.
     """
 
     def __init__(
@@ -41,16 +41,16 @@ class LaunchDescription(LaunchDescriptionEntity):
 
     @property
     def deprecated(self) -> bool:
-        """Whether it is deprecated."""
+        """Whether the description is deprecated."""
         return self._deprecated_reason is not None
 
     @property
     def deprecated_reason(self) -> str | None:
-        """The reason for its deprecation."""
+        """Why the description is deprecated, or None."""
         return self._deprecated_reason
 
     def describe(self) -> str:
-        """Return the number of its entities."""
+        """Return a text with the number of entities."""
         number = len(self._entities)
         return f"{type(self).__name__}({number} {'entity' if number == 1 else 'entities'})"
 
@@ -62,7 +62,7 @@ class LaunchDescription(LaunchDescriptionEntity):
         """Append an entity.
 
         Raises:
-            AttributeError: LAUNCH147, it is not an entity.
+            AttributeError: LAUNCH147, the argument is not an entity.
         """
         self._entities.append(_checked(entity))
 
@@ -70,7 +70,7 @@ class LaunchDescription(LaunchDescriptionEntity):
         """Append an action.
 
         Raises:
-            AttributeError: LAUNCH147, it is not an entity.
+            AttributeError: LAUNCH147, the argument is not an entity.
         """
         self._entities.append(_checked(action))
 
@@ -85,16 +85,19 @@ class LaunchDescription(LaunchDescriptionEntity):
         return self._entities
 
     def get_launch_arguments(self, conditional_inclusion: bool = False) -> list[DeclareLaunchArgument]:
-        """Return the arguments declared here and, as far as known before it runs, in included descriptions.
+        """Return the arguments declared here and in included descriptions.
 
-        Of several declarations with the same name, the first counts. A declaration under a condition is marked by its
-        ``conditionally_included``.
+        Descriptions that are not known before the launch are not searched. The first declaration of a name counts. A
+        declaration under a condition is marked by its ``conditionally_included``.
         """
         return declared_arguments(self.entities, conditional_inclusion)
 
 
 def _checked(entity: Any) -> Any:
-    """Check that entities can be visited; ROS fails only when the launch runs, far from the location."""
+    """Return an entity after checking that it can be visited.
+
+    ROS fails only when the launch runs, far from the location of the mistake.
+    """
     if isinstance(entity, LaunchDescriptionEntity) or hasattr(entity, "visit"):
         return entity
     kind = type(entity).__name__

@@ -21,27 +21,36 @@ class LaunchDescriptionEntity(Placed):
         return None
 
     def describe(self) -> str:
-        """Return a short description."""
+        """Return a short text for listings."""
         return f"{type(self).__name__}()"
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return the entities that are always visited after it, as far as known before the launch."""
+        """Return the entities that are always visited after this one.
+
+        Only entities that are known before the launch are included.
+        """
         return []
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return the entities that are visited under a condition, with a text about each condition."""
+        """Return the entities that are visited under a condition, with a text for each condition."""
         return []
 
     def arguments_given_inside(self) -> tuple[str, ...]:
-        """Return the names of launch arguments that it passes to its children, as far as known in advance."""
+        """Return the names of launch arguments that the entity sets for its children.
+
+        Only names that are known before the launch are included.
+        """
         return ()
 
     def hides_entities(self) -> bool:
-        """Return whether some of its entities are unknown before the launch, such as those of a file."""
+        """Return whether some child entities are unknown before the launch.
+
+        The entities of a file are an example.
+        """
         return False
 
     def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
-        """Return an error of its child entities with notes on the way to them."""
+        """Return an error in a child entity with notes that explain how the child was reached."""
         return error
 
     def get_asyncio_future(self) -> asyncio.Future[Any] | None:
@@ -56,10 +65,10 @@ SomeEntitiesType_types_tuple = (LaunchDescriptionEntity, Iterable)
 
 
 def as_entities(value: Any) -> list[LaunchDescriptionEntity]:
-    """Return one entity, several, or None as a list.
+    """Return a list of entities for a single entity, several entities, or None.
 
     Raises:
-        TypeError: for anything that is not an entity.
+        TypeError: the argument is or contains something that is not an entity.
     """
     if value is None:
         return []

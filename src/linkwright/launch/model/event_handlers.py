@@ -1,4 +1,4 @@
-"""Event handlers, which visit entities on an event."""
+"""Event handlers, which visit entities when an event occurs."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ class BaseEventHandler:
     """Reacts to the events that a matcher accepts; users derive from it and override `handle`.
 
     Args:
-        matcher: called with the event.
-        handle_once: whether it is unregistered after the first event.
+        matcher: called with an event; returns whether the handler accepts the event.
+        handle_once: whether the handler is unregistered after the first event.
     """
 
     def __init__(self, *, matcher: Callable[[Any], bool], handle_once: bool = False) -> None:
@@ -29,22 +29,22 @@ class BaseEventHandler:
 
     @property
     def handle_once(self) -> bool:
-        """Whether it is unregistered after the first event."""
+        """Whether the handler is unregistered after the first event."""
         return self._handle_once
 
     @property
     def handler_description(self) -> str | None:
-        """A text about the reaction, for listings of a launch."""
+        """A text that describes the reaction in listings."""
         return None
 
     @property
     def matcher_description(self) -> str | None:
-        """A text about the accepted events, for listings of a launch."""
+        """A text that describes the accepted events in listings."""
         return None
 
     @property
     def entities(self) -> Any:
-        """The entities that it visits, as far as known."""
+        """The entities that the handler visits, as far as they are known."""
         return None
 
     def matches(self, event: Any) -> bool:
@@ -52,7 +52,7 @@ class BaseEventHandler:
         return self._matcher(event)
 
     def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
-        """Return a line for listings of a launch, and the entities that it visits."""
+        """Return a line for listings, and the entities that the handler visits."""
         text = (
             f"{type(self).__name__}(matcher='{self.matcher_description}', handler='{self.handler_description}', "
             f"handle_once={self.handle_once})"
@@ -60,7 +60,7 @@ class BaseEventHandler:
         return text, list(_listed(self.entities))
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
-        """Record the event; subclasses return the entities to visit."""
+        """Set the event as a local of the context; subclasses return the entities to visit."""
         context.extend_locals({"event": event})
         if self.handle_once:
             context.unregister_event_handler(self)
@@ -68,12 +68,12 @@ class BaseEventHandler:
 
 
 class EventHandler(BaseEventHandler):
-    """Visits entities on an event that its matcher accepts.
+    """Visits entities when its matcher accepts an event.
 
     Args:
-        matcher: called with the event.
-        entities: what is visited then.
-        handle_once: whether it is unregistered after the first event.
+        matcher: called with an event; returns whether the handler accepts the event.
+        entities: the entities to visit.
+        handle_once: whether the handler is unregistered after the first event.
     """
 
     def __init__(
@@ -94,16 +94,16 @@ class EventHandler(BaseEventHandler):
 
 
 class _ReactingHandler(BaseEventHandler):
-    """Visits entities, or those that a function of event and context returns.
+    """Visits given entities, or the entities that a function of event and context returns.
 
     Args:
-        matcher: called with the event.
+        matcher: called with an event; returns whether the handler accepts the event.
         reaction: the entities, or a function of event and context that returns them.
-        name: the user's name of the reaction.
-        handle_once: whether it is unregistered after the first event.
+        name: the user's name for the reaction, for messages.
+        handle_once: whether the handler is unregistered after the first event.
 
     Raises:
-        TypeError: the reaction is neither.
+        TypeError: the reaction is neither a function nor entities.
     """
 
     def __init__(
@@ -114,12 +114,12 @@ class _ReactingHandler(BaseEventHandler):
 
     @property
     def entities(self) -> list[LaunchDescriptionEntity]:
-        """The entities to visit, as far as known."""
+        """The entities to visit, as far as they are known."""
         return self._entities
 
     @property
     def handler_description(self) -> str:
-        """The name of the function, or a word for actions."""
+        """A text that names the function, or ``<actions>``."""
         return "<actions>" if self._function is None else str(self._function)
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
@@ -132,11 +132,11 @@ class OnActionEventBase(_ReactingHandler):
     """A handler for events that come from an action.
 
     Args:
-        action_matcher: the action, a function of an action, or None for all.
+        action_matcher: the action, a predicate on actions, or None for all actions.
         on_event: the entities to visit, or a function of event and context that returns them.
         target_event_cls: the class of the events.
         target_action_cls: the class of the actions.
-        handle_once: whether it is unregistered after the first event.
+        handle_once: whether the handler is unregistered after the first event.
     """
 
     def __init__(
@@ -168,14 +168,14 @@ class OnActionEventBase(_ReactingHandler):
 
     @property
     def matcher_description(self) -> str:
-        """A text about the accepted events."""
+        """A text that describes the accepted events."""
         if self._action_name is None:
             return f"event == {self._event_name}"
         return f"event == {self._event_name} and {self._action_name}(event.action)"
 
 
 def _reaction(given: Any, name: str) -> tuple[Callable[..., Any] | None, list[LaunchDescriptionEntity]]:
-    """A function, or else entities."""
+    """Return the function and no entities, or None and the entities."""
     if callable(given) and not isinstance(given, LaunchDescriptionEntity):
         return given, []
     try:
@@ -191,9 +191,10 @@ def _listed(entities: Any) -> Iterable[Any]:
 
 
 class OnExecutionComplete(OnActionEventBase):
-    """Reacts when an action has been executed; for one that takes time, such as a process, when it has ended.
+    """Reacts when an action has been executed, or when a process has ended.
 
-    Without a target it reacts to all actions except its own, which would never end.
+    In general, an action that takes time must have ended. Without a target, it reacts to all actions except its own,
+    which would cause an endless loop.
     """
 
     def __init__(
@@ -227,7 +228,7 @@ class OnIncludeLaunchDescription(BaseEventHandler):
         super().__init__(matcher=lambda event: isinstance(event, events.IncludeLaunchDescription), **kwargs)
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
-        """The description."""
+        """Return the included description, to be visited."""
         super().handle(event, context)
         return event.launch_description
 
@@ -245,5 +246,5 @@ class OnShutdown(_ReactingHandler):
 
     @property
     def matcher_description(self) -> str:
-        """A text about the accepted events."""
+        """A text that describes the accepted events."""
         return "event issubclass of launch.events.Shutdown"

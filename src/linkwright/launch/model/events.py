@@ -13,15 +13,15 @@ class ProcessAction(Protocol):
     """An action that starts a process, or a node in the launcher's process.
 
     Attributes:
-        place: its location in the user's program.
-        process_details: ``name``, ``cmd``, ``cwd``, ``env`` and ``pid`` once it runs.
+        place: the location of the action in the user's program.
+        process_details: ``name``, ``cmd``, ``cwd``, ``env`` and ``pid`` of the process once it is running.
     """
 
     place: Place | None
     process_details: dict[str, Any] | None
 
     def wrote(self, stream: int, text: bytes) -> None:
-        """Store output of the process to stdout (1) or stderr (2)."""
+        """Store output that the process wrote to stdout (1) or stderr (2)."""
 
     def exited(self, event: ProcessExited, context: Any) -> list[Any]:
         """Return the entities to visit when the process has ended."""
@@ -31,13 +31,13 @@ ProcessMatcher = Callable[[ProcessAction], bool]
 
 
 class Event:
-    """Something that happened or is requested."""
+    """The base class of events, which report an occurrence or request an action."""
 
     name = "launch.Event"
 
 
 class IncludeLaunchDescription(Event):
-    """A request to visit a description."""
+    """The request to visit a launch description."""
 
     name = "launch.events.IncludeLaunchDescription"
 
@@ -46,7 +46,7 @@ class IncludeLaunchDescription(Event):
 
 
 class Shutdown(Event):
-    """A request to end the launch."""
+    """The request to end the launch."""
 
     name = "launch.events.Shutdown"
 
@@ -56,7 +56,7 @@ class Shutdown(Event):
 
 
 class TimerEvent(Event):
-    """A timer has expired."""
+    """The event that a timer has expired."""
 
     name = "launch.events.TimerEvent"
 
@@ -66,7 +66,7 @@ class TimerEvent(Event):
 
 
 class ExecutionComplete(Event):
-    """An action that takes time has ended."""
+    """The event that an action has completed."""
 
     name = "launch.events.ExecutionComplete"
 
@@ -78,12 +78,12 @@ class RunningProcessEvent(Event):
     """An event of a process, or of a node in the launcher's process.
 
     Attributes:
-        action: the action that started it.
-        process_name: its name in the log, such as ``talker-1``.
-        cmd: the words of its command.
-        cwd: its working folder, None for the launcher's.
-        env: its environment, None for the launcher's.
-        pid: its process id.
+        action: the action that started the process.
+        process_name: the name of the process in the log, such as ``talker-1``.
+        cmd: the words of the command.
+        cwd: the working directory; None for the launcher's.
+        env: the environment; None for the launcher's.
+        pid: the process ID.
     """
 
     name = "launch.events.process.RunningProcessEvent"
@@ -107,21 +107,21 @@ class RunningProcessEvent(Event):
 
     @property
     def execute_process_action(self) -> ProcessAction:
-        """The action, under its older name."""
+        """The action, under its former name."""
         return self.action
 
 
 class ProcessStarted(RunningProcessEvent):
-    """A process runs."""
+    """The event that a process has started."""
 
     name = "launch.events.process.ProcessStarted"
 
 
 class ProcessExited(RunningProcessEvent):
-    """A process has ended.
+    """The event that a process has ended.
 
     Args:
-        returncode: its exit status; the negative signal number if a signal ended it.
+        returncode: the exit status; the negative signal number if a signal ended the process.
         details: see `RunningProcessEvent`.
     """
 
@@ -133,10 +133,10 @@ class ProcessExited(RunningProcessEvent):
 
 
 class ProcessIO(RunningProcessEvent):
-    """A process wrote something.
+    """The event that a process wrote output.
 
     Args:
-        text: the bytes.
+        text: the bytes that it wrote.
         fd: 1 for stdout, 2 for stderr.
         details: see `RunningProcessEvent`.
     """
@@ -152,29 +152,29 @@ class ProcessIO(RunningProcessEvent):
 
     @property
     def from_stdin(self) -> bool:
-        """Whether it was sent to stdin."""
+        """Whether the text was sent to stdin."""
         return self.fd == 0
 
     @property
     def from_stdout(self) -> bool:
-        """Whether it was written to stdout."""
+        """Whether the text was written to stdout."""
         return self.fd == 1
 
     @property
     def from_stderr(self) -> bool:
-        """Whether it was written to stderr."""
+        """Whether the text was written to stderr."""
         return self.fd == 2
 
 
 class ProcessStdout(ProcessIO):
-    """A process wrote to stdout."""
+    """The event that a process wrote to stdout."""
 
     name = "launch.events.process.ProcessStdout"
     fd = 1
 
 
 class ProcessStderr(ProcessIO):
-    """A process wrote to stderr."""
+    """The event that a process wrote to stderr."""
 
     name = "launch.events.process.ProcessStderr"
     fd = 2
@@ -193,7 +193,7 @@ class ProcessStdin(ProcessTargetedEvent):
     """A request to send text to the processes that the matcher accepts.
 
     Attributes:
-        text: the bytes.
+        text: the bytes to send.
     """
 
     name = "launch.events.process.ProcessStdin"
@@ -234,7 +234,7 @@ def matches_action(target_action: object) -> ProcessMatcher:
 
 
 def matches_pid(pid: int) -> ProcessMatcher:
-    """Return a matcher that accepts the process with an id."""
+    """Return a matcher that accepts the process with a process ID."""
     return lambda action: action.process_details is not None and action.process_details["pid"] == pid
 
 

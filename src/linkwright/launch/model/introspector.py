@@ -1,4 +1,7 @@
-"""Descriptions of launch descriptions, as ``ros2 launch --print-description`` prints them."""
+"""Textual descriptions of launch descriptions.
+
+``ros2 launch --print-description`` prints them.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +43,7 @@ def _tree(entities: Iterable[Any], depth: int = 1) -> list[str]:
 
 
 def _described(entity: Any) -> tuple[str, list[LaunchDescriptionEntity]]:
-    """Return an entity's description and its children."""
+    """Return a text that describes an entity, and the entity's children."""
     if isinstance(entity, RegisterEventHandler):
         text, inside = entity.event_handler.describe()
         return f"RegisterEventHandler('{text}'):", inside

@@ -18,7 +18,7 @@ FilePath = str | bytes | os.PathLike[Any]
 
 
 def isclassinstance(obj: object) -> bool:
-    """Return whether an object is an instance of a class; in Python 3, every object is."""
+    """Return whether an object is an instance of a class, which in Python 3 is always true."""
     return hasattr(obj, "__class__")
 
 
@@ -33,10 +33,10 @@ def is_a_subclass(obj: object, entity_type: type) -> bool:
 
 
 def ensure_argument_type(argument: Any, types: Any, argument_name: str, caller: str | None = None) -> None:
-    """Check that an argument is of a type, or of one of several.
+    """Check that an argument has a type, or one of several types.
 
     Raises:
-        TypeError: it is not.
+        TypeError: it does not.
     """
     allowed = [types] if inspect.isclass(types) else types
     listed: list[Any] = list(allowed) if isinstance(allowed, Iterable) and not isinstance(allowed, str) else [None]
@@ -55,12 +55,12 @@ def ensure_argument_type(argument: Any, types: Any, argument_name: str, caller: 
 
 
 def create_future(loop: asyncio.AbstractEventLoop | None) -> asyncio.Future[Any]:
-    """Create a future of a loop, by default of the running one."""
+    """Create a future for an event loop, by default the running one."""
     return (loop or get_loop()).create_future()
 
 
 def get_loop() -> asyncio.AbstractEventLoop:
-    """Return the running loop, or else the thread's previous loop, or a new one."""
+    """Return the running event loop, else the one that an earlier call created, else a new one."""
     try:
         return asyncio.get_running_loop()
     except RuntimeError:
@@ -77,7 +77,10 @@ _loops: list[asyncio.AbstractEventLoop] = []
 def visit_all_entities_and_collect_futures(
     entity: LaunchDescriptionEntity, context: LaunchContext
 ) -> list[tuple[LaunchDescriptionEntity, asyncio.Future[Any]]]:
-    """Visit an entity and its descendants, and collect the futures of those that run on after their visit."""
+    """Visit an entity and its descendants, and return their futures.
+
+    An entity has a future if it outlasts its visit.
+    """
     following = entity.visit(context)
     future = entity.get_asyncio_future()
     collected = [] if future is None else [(entity, future)]
@@ -87,7 +90,7 @@ def visit_all_entities_and_collect_futures(
 
 
 def shutdown_on_process_exit(process_action: Any) -> RegisterEventHandler:
-    """Return an action that shuts the launch down when a process has ended."""
+    """Return an action that shuts the launch down when a process ends."""
     from linkwright.launch.model.actions import EmitEvent, RegisterEventHandler
     from linkwright.launch.model.events import Shutdown
     from linkwright.launch.model.process_event_handlers import OnProcessExit

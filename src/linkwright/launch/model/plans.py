@@ -1,4 +1,7 @@
-"""Plans of processes, which actions create; those of our own nodes are `linkwright.hosting.plans.HostedPlan`s."""
+"""Plans of processes, which actions create.
+
+Plans of our own nodes are `linkwright.hosting.plans.HostedPlan`.
+"""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from linkwright.launch.model.event_handlers import EntitiesOrCallable, OnActionE
 
 
 def _check_target(target_action: Any, handler: str) -> None:
-    """Raise TypeError for a target that cannot be a process."""
+    """Check that a target can be a process, and raise TypeError otherwise."""
     if target_action is None or isinstance(target_action, ExecuteLocal):
         return
     if isinstance(target_action, LaunchDescriptionEntity) or not callable(target_action):
@@ -42,14 +42,14 @@ class _OnProcessEvent(OnActionEventBase):
 
 
 class OnProcessStart(_OnProcessEvent):
-    """Reacts when a process has started."""
+    """Reacts when a process starts."""
 
     def __init__(self, *, on_start: EntitiesOrCallable, target_action: Any = None, handle_once: bool = False) -> None:
         super().__init__(events.ProcessStarted, on_start, target_action, handle_once)
 
 
 class OnProcessExit(_OnProcessEvent):
-    """Reacts when a process has ended."""
+    """Reacts when a process ends."""
 
     def __init__(
         self, *, on_exit: EntitiesOrCallable = None, target_action: Any = None, handle_once: bool = False
@@ -58,14 +58,14 @@ class OnProcessExit(_OnProcessEvent):
 
 
 class OnProcessIO(_OnProcessEvent):
-    """Reacts when a process writes.
+    """Reacts when a process writes output.
 
     Args:
-        target_action: the action of the process; all by default.
-        on_stdin: function of the event, for input to stdin.
-        on_stdout: function of the event, for output to stdout.
-        on_stderr: function of the event, for output to stderr.
-        handle_once: whether it is unregistered after the first event.
+        target_action: the action of the process; all processes by default.
+        on_stdin: a function of the event, for input to stdin.
+        on_stdout: a function of the event, for output to stdout.
+        on_stderr: a function of the event, for output to stderr.
+        handle_once: whether the handler is unregistered after the first event.
     """
 
     def __init__(

@@ -1,7 +1,8 @@
-"""Programs that launch files start as processes, and that nodes of this process replace where they are not installed.
+"""Programs that Linkwright's nodes replace if they are not installed.
 
-They are found through the entry points ``linkwright.replaced_programs``, whose names are those of the programs. Each
-points to a `CommandParser`.
+Launch files start such programs as processes. The replacements are found through the entry points
+``linkwright.replaced_programs``, whose names are the names of the programs. Each entry point refers to a
+`CommandParser`.
 """
 
 from __future__ import annotations
@@ -22,19 +23,21 @@ _INTERPRETERS = ("ruby",)
 
 
 def replaced_programs() -> Mapping[str, EntryPoint]:
-    """Return the parsers of command lines, by the names of the programs."""
+    """Return the command line parsers of the replaced programs, by program name."""
     return extensions("linkwright.replaced_programs")
 
 
 def replacing_node(words: Sequence[str], environment: Mapping[str, str]) -> NodeCommand | None:
-    """Return the node that replaces a command; None if there is none, or if the program is installed.
+    """Return the node that replaces a command, or None.
+
+    There is none if the program is installed.
 
     Args:
         words: the words of the command line.
         environment: the environment whose ``PATH`` is searched.
 
     Raises:
-        LinkwrightError: NODE002, the package that brings the node cannot be imported.
+        LinkwrightError: NODE002, the package that provides the node cannot be imported.
     """
     if words and PurePath(words[0]).name in _INTERPRETERS:
         words = words[1:]

@@ -1,4 +1,4 @@
-"""The interface of the running launch for actions, which the engine implements."""
+"""The interface through which actions use the running launch; the engine implements it."""
 
 from __future__ import annotations
 
@@ -34,21 +34,21 @@ class NodeHosting(Protocol):
 
     @property
     def graph(self) -> Graph:
-        """The graph of these nodes."""
+        """The graph of the nodes in the launcher's process."""
 
     @property
     def launcher_node(self) -> Node:
         """The launcher's own node for services and topics, created on first use."""
 
     def plan(self, plan: HostedPlan) -> None:
-        """Schedule the start of a node; ignored once the launch is ending."""
+        """Schedule the start of a node; has no effect once the launch is ending."""
 
     def use_simulated_time(self, value: bool) -> None:
         """Switch the launcher's own node between ``/clock`` and wall time."""
 
 
 class RunningLaunch(Protocol):
-    """The running launch."""
+    """The interface of a running launch."""
 
     @property
     def finder(self) -> PackageFinder:
@@ -68,15 +68,15 @@ class RunningLaunch(Protocol):
 
     @property
     def host(self) -> NodeHosting:
-        """Runs nodes in the launcher's own process."""
+        """The object that runs nodes in the launcher's own process."""
 
     @property
     def loop(self) -> asyncio.AbstractEventLoop | None:
-        """The event loop, while it runs."""
+        """The event loop while it runs, else None."""
 
     @property
     def ending(self) -> bool:
-        """Whether it is ending."""
+        """Whether the launch is ending."""
 
     @property
     def isolates_nodes(self) -> bool:
@@ -87,10 +87,10 @@ class RunningLaunch(Protocol):
         """A folder for files that the processes of this launch read; it is deleted after the launch."""
 
     def number_process(self, base_name: str) -> str:
-        """Return the log name of a process: the name of its program with the next number."""
+        """Return a process's log name, which is the program's name followed by the next number."""
 
     def start_process(self, plan: ProcessPlan, name: str) -> None:
-        """Start a process, follow it to its end, and respawn it if so planned."""
+        """Start a process, monitor it until it ends, and respawn it if its plan requests that."""
 
     def call_later(
         self,
@@ -101,19 +101,19 @@ class RunningLaunch(Protocol):
         cancel_on_shutdown: bool = True,
         schedule: Schedule | None = None,
     ) -> Callable[[], None]:
-        """Schedule an event and a visit to entities; return a handle that cancels them."""
+        """Schedule an event and a visit to entities, and return a function that cancels them."""
 
     def hold(self, future: asyncio.Future[Any]) -> None:
-        """Keep the launch running until a future of an entity is done."""
+        """Keep the launch running until an entity's future is done."""
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run a coroutine in the background; the launch waits for its end."""
+        """Run a coroutine in the background; the launch waits for it to finish."""
 
     def could_not_start(self, what: object, error: LinkwrightError) -> None:
-        """Report why something could not be started; the launch continues without it."""
+        """Report why a process or node could not be started; the launch continues without it."""
 
     def fail(self, what: object) -> None:
-        """Record a failure: the launch exits with 1."""
+        """Record a failure, after which the launch exits with status 1."""
 
     def report(self, about: object, findings: Sequence[Diagnostic]) -> None:
-        """Report findings about a robot description, here and in the viewer."""
+        """Report findings about a robot description, both here and in the viewer."""

@@ -1,4 +1,4 @@
-"""Substitutions, text that is known only when the launch runs."""
+"""Substitutions, which are texts that are known only when the launch runs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Substitution(Placed):
-    """An object that gives text when it is performed in a launch context."""
+    """An object that evaluates to text in a launch context."""
 
     def __repr__(self) -> str:
         return f"<{_public_name(type(self))} {self.describe()}>"
@@ -23,7 +23,7 @@ class Substitution(Placed):
         return f"{type(self).__name__}()"
 
     def perform(self, context: LaunchContext) -> str:
-        """The text."""
+        """Return the text in a launch context."""
         raise NotImplementedError(f"{type(self).__name__} does not define perform()")
 
 
@@ -40,7 +40,7 @@ class TextSubstitution(Substitution):
         return f"'{self.text}'"
 
     def perform(self, context: LaunchContext) -> str:
-        """The text."""
+        """Return the text."""
         return self.text
 
 
@@ -54,7 +54,7 @@ def normalize_to_list_of_substitutions(value: Any) -> list[Substitution]:
     """Return a value of `SomeSubstitutionsType` as a list of substitutions; paths count as text.
 
     Raises:
-        TypeError: for anything else.
+        TypeError: the value has another type.
     """
     if isinstance(value, Substitution):
         return [value]
@@ -66,12 +66,12 @@ def normalize_to_list_of_substitutions(value: Any) -> list[Substitution]:
 
 
 def perform_substitutions(context: LaunchContext, substitutions: Iterable[Substitution]) -> str:
-    """Return the joined texts of several substitutions."""
+    """Evaluate substitutions, and return their texts joined."""
     return "".join(context.perform_substitution(substitution) for substitution in substitutions)
 
 
 def describe(substitutions: Iterable[Substitution]) -> str:
-    """Return several substitutions in the form of listings."""
+    """Return a text that shows substitutions in the form of listings."""
     return " + ".join(substitution.describe() for substitution in substitutions)
 
 
@@ -84,7 +84,7 @@ def _single(value: Any) -> Substitution:
 
 
 def _public_name(kind: type) -> str:
-    """Return the name by which users import a class: ours appear under ``launch``."""
+    """Return the name under which users import a class; our classes appear under ``launch``."""
     if not kind.__module__.startswith("linkwright."):
         return f"{kind.__module__}.{kind.__qualname__}"
     module = "".join("_" + letter.lower() if letter.isupper() else letter for letter in kind.__name__).lstrip("_")

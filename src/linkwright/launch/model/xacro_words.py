@@ -1,4 +1,4 @@
-"""The command line of xacro in launch files."""
+"""Parsing of the command line of xacro in launch files."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[Xa
 
     Args:
         words: the arguments of ``xacro``.
-        text: the arguments as written, before the split into words.
+        text: the arguments as written, before they were split into words.
         folder: the folder for relative paths.
 
     Returns:
         The parsed arguments, and a remark for the user or None.
 
     Raises:
-        LinkwrightError: LAUNCH128, these arguments of xacro do not produce a text.
+        LinkwrightError: LAUNCH128, xacro does not produce a text with these arguments.
     """
     files: list[str] = []
     arguments: dict[str, str] = {}

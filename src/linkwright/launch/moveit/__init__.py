@@ -1,7 +1,7 @@
-"""The modules that launch files of MoveIt packages import: ``launch_param_builder`` and ``moveit_configs_utils``.
+"""The modules ``launch_param_builder`` and ``moveit_configs_utils`` for MoveIt launch files.
 
-Both collect parameters from the files of a package. With them, such packages load here too, and their
-``robot_state_publisher`` and viewer run; the programs of MoveIt itself are compiled.
+Both collect parameters from the files of a package. They allow such packages to be launched here, with their
+``robot_state_publisher`` and viewer. MoveIt's own programs are compiled and are not part of Linkwright.
 """
 
 from linkwright.launch.moveit.builder import MoveItConfigsBuilder, ParameterBuilder

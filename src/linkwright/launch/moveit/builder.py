@@ -1,4 +1,4 @@
-"""Builders that find and read the parameters of a package (``moveit_configs_utils``, ``launch_param_builder``)."""
+"""Builders for a package's parameters (``moveit_configs_utils``, ``launch_param_builder``)."""
 
 from __future__ import annotations
 
@@ -32,10 +32,12 @@ _Path = str | Path | None
 
 
 class ParameterBuilder:
-    """Collects parameters; every method except the last returns the builder, so that calls can be chained.
+    """Collects parameters.
+
+    Every method except the last returns the builder, so that calls can be chained.
 
     Args:
-        package_name: the package for relative paths.
+        package_name: the package to which relative paths refer.
 
     Raises:
         PackageNotFoundError: PKG101, there is no such package.
@@ -51,41 +53,43 @@ class ParameterBuilder:
         parameter_namespace: str | None = None,
         mappings: Mapping[str, Any] | None = None,
     ) -> Self:
-        """Add the contents of a YAML file, optionally below a name."""
+        """Add the contents of a YAML file, optionally nested under a name."""
         content = load_yaml(self._package_path / file_path, mappings) or {}
         target = self._parameters.setdefault(parameter_namespace, {}) if parameter_namespace else self._parameters
         target.update(content)
         return self
 
     def file_parameter(self, parameter_name: str, file_path: str | Path) -> Self:
-        """Add the text of a file."""
+        """Add a parameter with the text of a file."""
         self._parameters[parameter_name] = load_file(self._package_path / file_path)
         return self
 
     def xacro_parameter(
         self, parameter_name: str, file_path: str | Path, mappings: Mapping[str, Any] | None = None
     ) -> Self:
-        """Add a model."""
+        """Add a parameter with the expanded text of a model file."""
         self._parameters[parameter_name] = load_xacro(self._package_path / file_path, mappings)
         return self
 
     def parameter(self, parameter_name: str, parameter_value: ParameterValueType) -> Self:
-        """Add a value."""
+        """Add a parameter with a value."""
         self._parameters[parameter_name] = parameter_value
         return self
 
     def to_dict(self) -> dict[str, Any]:
-        """The parameters."""
+        """Return the collected parameters."""
         return self._parameters
 
 
 class MoveItConfigsBuilder(ParameterBuilder):
-    """Reads the files of a configuration package, each from its usual place or from a given path.
+    """Reads the files of a configuration package.
+
+    Each is read from its usual place or from a given path.
 
     Args:
-        robot_name: the robot.
-        robot_description: the parameter for the URDF, which is also the prefix of some others.
-        package_name: the package, by default the robot's name and ``_moveit_config``.
+        robot_name: the name of the robot.
+        robot_description: the parameter for the URDF, whose name is also the prefix of some other parameters.
+        package_name: the configuration package; by default the robot's name followed by ``_moveit_config``.
 
     Raises:
         PackageNotFoundError: PKG101, there is no such package.
@@ -101,7 +105,10 @@ class MoveItConfigsBuilder(ParameterBuilder):
         self.__urdf, self.__srdf = self.__models()
 
     def robot_description(self, file_path: _Path = None, mappings: _Mappings = None) -> MoveItConfigsBuilder:
-        """Read the URDF; warn if there is no such file: nodes then read it from ``/robot_description``."""
+        """Read the URDF, or warn if its file is missing.
+
+        Without the file, nodes use ``/robot_description``.
+        """
         path = self.__urdf if file_path is None else self._package_path / file_path
         try:
             model = _model(path, mappings or self.__urdf_arguments)
@@ -118,12 +125,12 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def robot_description_kinematics(self, file_path: _Path = None) -> MoveItConfigsBuilder:
-        """Read the inverse kinematics solvers."""
+        """Read the configuration of the inverse kinematics solvers."""
         self.__moveit_configs.robot_description_kinematics = self.__below("_kinematics", file_path, "kinematics.yaml")
         return self
 
     def joint_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
-        """Read limits that replace those of the URDF."""
+        """Read joint limits that replace the limits in the URDF."""
         self.__moveit_configs.joint_limits = self.__below("_planning", file_path, "joint_limits.yaml")
         return self
 
@@ -133,18 +140,18 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def pilz_cartesian_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
-        """Read limits for the Pilz planner."""
+        """Read Cartesian limits for the Pilz planner."""
         self.__moveit_configs.pilz_cartesian_limits = self.__below("_planning", file_path, "pilz_cartesian_limits.yaml")
         return self
 
     def cartesian_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
-        """Alias of `pilz_cartesian_limits`, its former name."""
+        """Read Cartesian limits under the former name of `pilz_cartesian_limits`."""
         return self.pilz_cartesian_limits(file_path or _FOLDER / "cartesian_limits.yaml")
 
     def trajectory_execution(
         self, file_path: _Path = None, moveit_manage_controllers: bool = True
     ) -> MoveItConfigsBuilder:
-        """Read the controllers.
+        """Read the controllers that execute trajectories.
 
         Raises:
             RuntimeError: LAUNCH154, there are several such files, and none has the usual name.
@@ -177,7 +184,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def sensors_3d(self, file_path: _Path = None) -> MoveItConfigsBuilder:
-        """Read the sensors whose data becomes the occupancy map, if there are any."""
+        """Read the 3D sensors whose data forms the occupancy map, if the package configures any."""
         path = self.__file(file_path, "sensors_3d.yaml")
         content = load_yaml(path) if path.exists() else None
         if content and any(content.get("sensors") or ()):
@@ -190,15 +197,16 @@ class MoveItConfigsBuilder(ParameterBuilder):
         pipelines: Sequence[str] | None = None,
         load_all: bool = True,
     ) -> MoveItConfigsBuilder:
-        """Read the planners.
+        """Read the configuration of the planning pipelines.
 
         Args:
             default_planning_pipeline: the pipeline to use by default.
-            pipelines: their names; by default all that the package has a file for.
-            load_all: whether the default includes those that MoveIt itself has files for, if it is in the workspace.
+            pipelines: the names of the pipelines; by default all pipelines for which the package has a file.
+            load_all: whether the default includes the pipelines for which MoveIt itself has files, if it is in the
+                workspace.
 
         Raises:
-            RuntimeError: LAUNCH154, the default is not one of them.
+            RuntimeError: LAUNCH154, the default is not one of the pipelines.
         """
         folders = [self._package_path / _FOLDER, *_default_folder()]
         names = list(pipelines) if pipelines is not None else _stems(folders if load_all else folders[:1], _PLANNING)
@@ -224,7 +232,10 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def to_moveit_configs(self) -> MoveItConfigs:
-        """Return all parameters; missing ones are read from their usual place, if they exist there."""
+        """Return all parameters.
+
+        Parameters that were not read before are read from their usual place, if the files exist.
+        """
         configs = self.__moveit_configs
         if not configs.robot_description:
             self.robot_description()
@@ -248,12 +259,15 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return configs
 
     def to_dict(self, include_moveit_configs: bool = True) -> Parameters:
-        """Return the parameters that were added one by one, and by default those of `to_moveit_configs`."""
+        """Return the parameters that were added one by one.
+
+        By default, the result of `to_moveit_configs` is included.
+        """
         if include_moveit_configs:
             self._parameters.update(self.to_moveit_configs().to_dict())
         return self._parameters
 
-    # --- where files are --------------------------------------------------------------------------------------
+    # --- locations of files -----------------------------------------------------------------------------------
 
     def __file(self, given: _Path, usual: str) -> Path:
         return self._package_path / (_FOLDER / usual if given is None else given)
@@ -262,7 +276,10 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return {self.__parameter + ending: load_yaml(self.__file(given, usual))}
 
     def __models(self) -> tuple[Path, Path]:
-        """Return the files of URDF and SRDF: from the Setup Assistant's file, else named after the robot."""
+        """Return the paths of the URDF and SRDF.
+
+        They come from the Setup Assistant's file, or else are named after the robot.
+        """
         settings = self._package_path / ".setup_assistant"
         noted = (load_yaml(settings) or {}).get("moveit_setup_assistant_config", {}) if settings.exists() else {}
         urdf_noted, srdf_noted = (noted.get(kind) or noted.get(kind.upper()) or {} for kind in ("urdf", "srdf"))
@@ -302,7 +319,10 @@ def _warn_without_model(error: LookupError) -> None:
 
 
 def _model(path: Path, mappings: _Mappings) -> Any:
-    """Return the text of a model, or a substitution for it if its arguments are substitutions."""
+    """Return the text of a model.
+
+    It is a substitution if the model's arguments contain substitutions.
+    """
     if all(isinstance(word, str) for pair in (mappings or {}).items() for word in pair):
         return load_xacro(path, mappings)
     from linkwright.launch.ros import ParameterValue
@@ -311,7 +331,7 @@ def _model(path: Path, mappings: _Mappings) -> Any:
 
 
 def _stems(folders: Sequence[Path], ending: str) -> list[str]:
-    """Return the stems of file names in folders, without duplicates."""
+    """Return the parts of file names in folders before a suffix, without duplicates."""
     found = (path.name.removesuffix(ending) for folder in folders for path in sorted(folder.glob(f"*{ending}")))
     return list(dict.fromkeys(found))
 

@@ -11,7 +11,7 @@ Parameters = dict[str, Any]
 
 @dataclass
 class MoveItConfigs:
-    """Parameters by subject; each is a dictionary for ``parameters`` of a node.
+    """Parameters grouped by subject, each a dictionary for a node's ``parameters``.
 
     Attributes:
         package_path: share folder of the configuration package.
@@ -21,9 +21,9 @@ class MoveItConfigs:
         planning_pipelines: planners.
         trajectory_execution: controllers and the execution of trajectories.
         planning_scene_monitor: the published parts of the planning scene.
-        sensors_3d: the sensors whose data becomes the occupancy map.
+        sensors_3d: the sensors whose data forms the occupancy map.
         move_group_capabilities: additional capabilities of move_group.
-        joint_limits: limits that replace those of the URDF.
+        joint_limits: limits that replace the limits in the URDF.
         moveit_cpp: parameters of MoveItCpp.
         pilz_cartesian_limits: limits for the Pilz planner.
     """
@@ -45,11 +45,11 @@ class MoveItConfigs:
 
     @property
     def cartesian_limits(self) -> Parameters:
-        """Alias of `pilz_cartesian_limits`, its former name."""
+        """The value of `pilz_cartesian_limits`, under its former name."""
         return self.pilz_cartesian_limits
 
     def to_dict(self) -> Parameters:
-        """All parameters together."""
+        """Return all parameters in one dictionary."""
         made: Parameters = {}
         for group in (
             self.robot_description,
@@ -64,6 +64,6 @@ class MoveItConfigs:
         ):
             made.update(group)
         for name, limits in self.pilz_cartesian_limits.items():
-            # It shares its name with the joint limits.
+            # Merge the values, because the Cartesian limits and the joint limits use the same parameter name.
             made[name] = {**(made.get(name) or {}), **(limits or {})}
         return made

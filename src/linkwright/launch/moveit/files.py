@@ -1,4 +1,7 @@
-"""Files of a MoveIt configuration: text, YAML, xacro (``launch_param_builder.utils``), and a substitution for xacro."""
+"""Files of a MoveIt configuration: text, YAML, xacro (``launch_param_builder.utils``).
+
+There is also a substitution for xacro.
+"""
 
 from __future__ import annotations
 
@@ -27,15 +30,15 @@ _TEMPLATE_MARKS = ("{{", "{%", "{#")
 
 
 class ParameterBuilderFileNotFoundError(KeyError):
-    """A file of parameters does not exist."""
+    """Raised when a parameter file does not exist."""
 
 
 def load_file(file_path: str | Path, mappings: Mapping[str, Any] | None = None) -> str:
-    """Return the text of a file, filled in as a jinja2 template if mappings are given.
+    """Return the text of a file, rendered as a jinja2 template if mappings are given.
 
     Raises:
-        ParameterBuilderFileNotFoundError: LAUNCH153, it does not exist.
-        LinkwrightError: LAUNCH153, it cannot be read.
+        ParameterBuilderFileNotFoundError: LAUNCH153, the file does not exist.
+        LinkwrightError: LAUNCH153, the file cannot be read.
     """
     text = _text(Path(file_path))
     return text if mappings is None else _rendered(text, Path(file_path), mappings)
@@ -45,8 +48,8 @@ def load_yaml(file_path: str | Path, mappings: Mapping[str, Any] | None = None) 
     """Return the content of a YAML file, which may be a jinja2 template.
 
     Raises:
-        ParameterBuilderFileNotFoundError: LAUNCH153, it does not exist.
-        LinkwrightError: LAUNCH153, it cannot be read or is not YAML.
+        ParameterBuilderFileNotFoundError: LAUNCH153, the file does not exist.
+        LinkwrightError: LAUNCH153, the file cannot be read or is not YAML.
     """
     import yaml
 
@@ -65,8 +68,8 @@ def load_xacro(file_path: str | Path, mappings: Mapping[str, Any] | None = None)
     """Return the expanded text of a model file.
 
     Raises:
-        ParameterBuilderFileNotFoundError: LAUNCH153, it does not exist.
-        DescriptionError: the errors in it.
+        ParameterBuilderFileNotFoundError: LAUNCH153, the file does not exist.
+        DescriptionError: the errors in the file.
     """
     path = Path(file_path)
     _check_exists(path)
@@ -124,11 +127,11 @@ def _rendered(text: str, path: Path, mappings: Mapping[str, Any]) -> str:
 
 @expose_substitution("xacro")
 class Xacro(Substitution):
-    """The text of a model.
+    """The expanded text of a model file.
 
     Args:
-        file_path: the file.
-        mappings: name -> value of its arguments.
+        file_path: the path of the file.
+        mappings: name -> value of the model's arguments.
     """
 
     def __init__(
@@ -143,7 +146,7 @@ class Xacro(Substitution):
 
     @classmethod
     def parse(cls, data: Sequence[Any]) -> tuple[type[Substitution], dict[str, Any]]:
-        """The class and its arguments, for a path.
+        """Return the class and its keyword arguments for a path.
 
         Raises:
             TypeError: there are more arguments than a path.
@@ -154,20 +157,20 @@ class Xacro(Substitution):
 
     @property
     def file_path(self) -> list[Substitution]:
-        """The file, as substitutions."""
+        """The path of the file, as substitutions."""
         return self._file_path
 
     @property
     def mappings(self) -> dict[SomeSubstitutionsType, SomeSubstitutionsType]:
-        """The arguments, as they were given."""
+        """The model's arguments, as given."""
         return self._mappings
 
     def describe(self) -> str:
-        """The file."""
+        """Return a text with the file."""
         return f"Xacro({describe(self._file_path)})"
 
     def perform(self, context: LaunchContext) -> str:
-        """The text.
+        """Expand the model, and return its text.
 
         Raises:
             DescriptionError: the errors in the model.

@@ -1,4 +1,7 @@
-"""The launch files of a MoveIt configuration package (``moveit_configs_utils.launches``, ``launch_utils``)."""
+"""The launch files of a MoveIt configuration package.
+
+They are ``moveit_configs_utils.launches`` and ``launch_utils``.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,7 @@ from linkwright.launch.ros import Node, ParameterValue
 
 
 def generate_rsp_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """The robot state publisher."""
+    """Return a launch description of the robot state publisher."""
     frequency = "publish_frequency"
     node = Node(
         package="robot_state_publisher",
@@ -31,7 +34,7 @@ def generate_rsp_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
 
 
 def generate_moveit_rviz_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """The viewer."""
+    """Return a launch description of the viewer with the parameters of MoveIt."""
     made = LaunchDescription()
     made.add_action(DeclareBooleanLaunchArg("debug", default_value=False))
     made.add_action(DeclareLaunchArgument("rviz_config", default_value=_path(moveit_config, "config/moveit.rviz")))
@@ -52,7 +55,7 @@ def generate_moveit_rviz_launch(moveit_config: MoveItConfigs) -> LaunchDescripti
 
 
 def generate_setup_assistant_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """The Setup Assistant, for the package."""
+    """Return a launch description of the Setup Assistant for the configuration package."""
     made = LaunchDescription()
     made.add_action(DeclareBooleanLaunchArg("debug", default_value=False))
     name = "moveit_setup_assistant"
@@ -62,7 +65,7 @@ def generate_setup_assistant_launch(moveit_config: MoveItConfigs) -> LaunchDescr
 
 
 def generate_static_virtual_joint_tfs_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """A static transform for each virtual joint of the SRDF."""
+    """Return a launch description of static transforms for the virtual joints of the SRDF."""
     frames = [pair for text in moveit_config.robot_description_semantic.values() for pair in _virtual_joints(text)]
     return LaunchDescription(
         [
@@ -79,7 +82,7 @@ def generate_static_virtual_joint_tfs_launch(moveit_config: MoveItConfigs) -> La
 
 
 def generate_spawn_controllers_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """A spawner for each controller, and for the joint states."""
+    """Return a launch description that spawns each controller and the joint state broadcaster."""
     manager = moveit_config.trajectory_execution.get("moveit_simple_controller_manager") or {}
     controllers = [*(manager.get("controller_names") or ()), "joint_state_broadcaster"]
     return LaunchDescription(
@@ -91,7 +94,7 @@ def generate_spawn_controllers_launch(moveit_config: MoveItConfigs) -> LaunchDes
 
 
 def generate_warehouse_db_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """The database of the warehouse."""
+    """Return a launch description of the warehouse database."""
     defaults = {
         "moveit_warehouse_database_path": _path(moveit_config, "default_warehouse_mongo_db"),
         "moveit_warehouse_port": "33829",
@@ -121,7 +124,7 @@ def generate_warehouse_db_launch(moveit_config: MoveItConfigs) -> LaunchDescript
 
 
 def generate_move_group_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """move_group."""
+    """Return a launch description of move_group."""
     made = LaunchDescription()
     for name, value in (
         ("debug", False),
@@ -159,11 +162,11 @@ def generate_move_group_launch(moveit_config: MoveItConfigs) -> LaunchDescriptio
 
 
 def generate_demo_launch(moveit_config: MoveItConfigs, launch_package_path: Path | None = None) -> LaunchDescription:
-    """All of the above, with simulated joints.
+    """Return a launch description of all programs for a demo with simulated joints.
 
     Args:
         moveit_config: the parameters.
-        launch_package_path: share folder of the package whose launch files are included, by default that of the
+        launch_package_path: share folder of the package whose launch files are included; by default the package of the
             parameters.
     """
     folder = Path(launch_package_path or _folder(moveit_config)) / "launch"
@@ -207,7 +210,10 @@ def _path(configs: MoveItConfigs, file: str) -> str:
 
 
 def _virtual_joints(text: Any) -> Iterator[tuple[str, str]]:
-    """Return the parent frames and child links of the virtual joints in an SRDF that needs no launch context."""
+    """Return the parent frames and child links of the virtual joints in an SRDF.
+
+    The result is empty for an SRDF that needs a launch context.
+    """
     if not isinstance(text, str):
         return
     for joint in ET.fromstring(text).iter("virtual_joint"):  # noqa: S314 - expanded by us
@@ -237,12 +243,12 @@ def add_debuggable_node(
     extra_debug_args: list[Any] | None = None,
     **kwargs: Any,
 ) -> None:
-    """Add a node that an argument starts in gdb.
+    """Add a node that runs in gdb if an argument requests it.
 
     Args:
-        ld: the description.
+        ld: the launch description to extend.
         package: the node's package.
-        executable: its executable.
+        executable: the node's executable.
         condition_name: the argument that selects gdb.
         commands_file: commands for gdb.
         extra_debug_args: further arguments for the node in gdb.

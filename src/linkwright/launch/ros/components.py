@@ -1,4 +1,4 @@
-"""Nodes that are composed in a container (``launch_ros.descriptions``)."""
+"""Nodes that are loaded into a container (``launch_ros.descriptions``)."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ class ComposableNode(Placed):
     """A node that can be loaded into a container.
 
     Args:
-        package: the package of its library.
-        plugin: the name of its class there, such as ``composition::Talker``.
-        name: the name it is given.
-        namespace: its namespace, inside those of `PushRosNamespace` unless it starts with a slash.
-        parameters: as those of a `Node`.
+        package: the package of the node's library.
+        plugin: the name of the node's class there, such as ``composition::Talker``.
+        name: the name to give to the node.
+        namespace: the namespace of the node, inside the namespaces of `PushRosNamespace` unless it starts with a slash.
+        parameters: the parameters, as for a `Node`.
         remappings: pairs of names.
         extra_arguments: parameters for the container, such as ``use_intra_process_comms``.
-        condition: whether it is loaded.
+        condition: determines whether the node is loaded.
     """
 
     def __init__(
@@ -76,7 +76,7 @@ class ComposableNode(Placed):
         """Read the tag ``composable_node``.
 
         Raises:
-            RuntimeError: LAUNCH118, it has both ``if`` and ``unless``.
+            RuntimeError: LAUNCH118, the tag has both ``if`` and ``unless``.
         """
         kwargs: dict[str, Any] = {
             "package": parser.parse_substitution(entity.get_attr("pkg")),
@@ -101,27 +101,27 @@ class ComposableNode(Placed):
 
     @property
     def node_plugin(self) -> list[Substitution]:
-        """The name of its class, as substitutions."""
+        """The name of the node's class, as substitutions."""
         return self.__node_plugin
 
     @property
     def node_name(self) -> Any:
-        """Its name, as substitutions; None to keep the name in its code."""
+        """The node's name, as substitutions; None to keep the name in its code."""
         return self.__node_name
 
     @property
     def node_namespace(self) -> list[Substitution] | None:
-        """Its namespace, as substitutions."""
+        """The node's namespace, as substitutions."""
         return self.__node_namespace
 
     @property
     def parameters(self) -> tuple[Any, ...] | None:
-        """Its parameters, normalized."""
+        """The node's parameters, normalized."""
         return self.__parameters
 
     @property
     def remappings(self) -> list[RemapRule] | None:
-        """Its remappings, as tuples of substitutions."""
+        """The node's remappings, as tuples of substitutions."""
         return self.__remappings
 
     @property
@@ -130,7 +130,7 @@ class ComposableNode(Placed):
         return self.__extra_arguments
 
     def condition(self) -> Condition | None:
-        """Return whether it is loaded."""
+        """Return the condition that determines whether the node is loaded, or None."""
         return self.__condition
 
 
@@ -138,7 +138,7 @@ class ComposableLifecycleNode(ComposableNode):
     """A lifecycle node that can be loaded into a container.
 
     Args:
-        autostart: whether it is configured and activated when it is loaded.
+        autostart: whether the node is configured and activated when it is loaded.
         kwargs: see `ComposableNode`.
     """
 
@@ -151,24 +151,26 @@ class ComposableLifecycleNode(ComposableNode):
 
     @property
     def node_autostart(self) -> Any:
-        """Whether it is configured and activated when it is loaded."""
+        """Whether the node is configured and activated when it is loaded."""
         return self.__autostart
 
     @property
     def node_name(self) -> Any:
-        """Its name as substitutions, or its full name once it is loaded."""
+        """The node's name as substitutions, or its full name once it is loaded."""
         return super().node_name if self.__full_name is None else self.__full_name
 
     def loaded(self, full_name: str) -> None:
-        """Record its full name."""
+        """Record the full name of the node after it was loaded."""
         self.__full_name = full_name
 
 
 def get_composable_node_load_request(description: ComposableNode, context: LaunchContext) -> Any:
-    """Return the request to a container for loading a node; None if its condition does not hold.
+    """Return the request to load a node into a container.
+
+    The result is None if the node's condition does not hold.
 
     Raises:
-        LinkwrightError: the errors in its parameters.
+        LinkwrightError: the errors in the node's parameters.
     """
     condition = description.condition()
     if condition is not None and not condition.evaluate(context):
@@ -208,7 +210,10 @@ def get_composable_node_load_request(description: ComposableNode, context: Launc
 def to_parameters_list(
     context: LaunchContext, node_name: str, namespace: str | None, evaluated_parameters: Iterable[Any]
 ) -> list[Any]:
-    """Return evaluated parameters as ``rclpy.parameter.Parameter`` objects; files are read for the node's full name."""
+    """Return evaluated parameters as ``rclpy.parameter.Parameter`` objects.
+
+    Files are read for the node's full name.
+    """
     full_name = f"{(namespace or '').rstrip('/')}/{node_name.lstrip('/')}"
     full_name = full_name if full_name.startswith("/") else f"/{full_name}"
     return _parameters(context, full_name, own_parameters(tuple(evaluated_parameters), context).sources)
@@ -236,7 +241,10 @@ def _parameters(context: LaunchContext, full_name: str, sources: Iterable[Any]) 
 
 
 def _of_file(source: FileSource, context: LaunchContext, full_name: str) -> dict[str, Any]:
-    """Return the values of a file for a node: as in launch_ros, those under its own name override those of patterns."""
+    """Return a file's values for a node.
+
+    As in launch_ros, values under its own name override patterns.
+    """
     try:
         rules = source.file.rules(context)
     except LinkwrightError as error:

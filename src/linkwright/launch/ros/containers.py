@@ -1,4 +1,4 @@
-"""Containers of composed nodes, and the action that loads nodes into them."""
+"""Component containers, and the action that loads nodes into them."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ _CONFIGURE, _ACTIVATE = 1, 3
 
 @expose_action("load_composable_node")
 class LoadComposableNodes(Action):
-    """Loads nodes into a container, one after another, as soon as it is available.
+    """Loads nodes into a container, one after another, once the container is available.
 
     Args:
-        composable_node_descriptions: the nodes.
+        composable_node_descriptions: the nodes to load.
         target_container: the container's action, or its full name.
     """
 
@@ -74,10 +74,10 @@ class LoadComposableNodes(Action):
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> None:
-        """Start to load the nodes.
+        """Start loading the nodes.
 
         Raises:
-            LinkwrightError: the errors in their parameters.
+            LinkwrightError: the errors in the nodes' parameters.
         """
         requests = []
         for description in self.__composable_node_descriptions:
@@ -147,8 +147,8 @@ class ComposableNodeContainer(Node):
 
     Args:
         name: the container's name.
-        namespace: its namespace.
-        composable_node_descriptions: the nodes.
+        namespace: the container's namespace.
+        composable_node_descriptions: the nodes to load.
         kwargs: see `Node`.
     """
 
@@ -168,7 +168,7 @@ class ComposableNodeContainer(Node):
     def parse(
         cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
     ) -> tuple[type[Action], dict[str, Any]]:
-        """Read the tag: that of a node, and the nodes inside."""
+        """Read the attributes of a node's tag, and the nodes inside."""
         _, kwargs = super().parse(entity, parser, ignore)
         kwargs["composable_node_descriptions"] = _described(entity, parser, optional=True)
         return cls, kwargs
@@ -186,7 +186,7 @@ class ComposableNodeContainer(Node):
             if (condition := description.condition()) is None or condition.evaluate(context)
         ]
         if valid:
-            # The current scope applies to the nodes too, so their requests are created at once.
+            # Create the requests now, because the current scope applies to the loaded nodes, too.
             load = LoadComposableNodes(composable_node_descriptions=valid, target_container=self)
             load.place = self.place
             loading = [load]
@@ -194,7 +194,10 @@ class ComposableNodeContainer(Node):
         return [*(following or ()), *loading] or None
 
     def _may_be_hosted(self, context: LaunchContext, package: str | None, executable: str) -> bool:
-        """Return whether it may be hosted, as for any node, unless it loads components of others."""
+        """Return whether the container can run in the launcher's process.
+
+        It cannot if it loads third-party components.
+        """
         return super()._may_be_hosted(context, package, executable) and self._real_container(context) is None
 
     def _executable(self, finder: PackageFinder, package: str, executable: str) -> Executable:
@@ -221,7 +224,10 @@ class ComposableNodeContainer(Node):
 
 
 def _is_of_others(finder: PackageFinder, package: str, plugin: str) -> bool:
-    """Return whether a component is of others and not built here, rather than a misspelt one of ours."""
+    """Return whether a component is third-party and not built here.
+
+    A misspelt component of ours is not third-party.
+    """
     from linkwright.nodes.options import COMPONENTS
 
     share = finder.find(package)
@@ -241,7 +247,7 @@ def _described(entity: Entity, parser: Parser, *, optional: bool = False) -> lis
 
 
 def _manage(context: LaunchContext, description: ComposableLifecycleNode, full_name: str) -> None:
-    """Follow a loaded lifecycle node, and activate it if requested."""
+    """Monitor the state of a loaded lifecycle node, and activate the node if ``autostart`` requests it."""
     description.loaded(full_name)
     LifecycleEventManager(description).setup_lifecycle_manager(context)
     if not autostarts(context, description.node_autostart):

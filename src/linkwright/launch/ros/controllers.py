@@ -19,11 +19,13 @@ def generate_controllers_spawner_launch_description(
     controller_params_files: Sequence[Any] | None = None,
     extra_spawner_args: Sequence[Any] = (),
 ) -> LaunchDescription:
-    """Return a spawner of controllers, with arguments for the manager's name and for unloading at the end.
+    """Return a launch description that spawns controllers.
+
+    It declares arguments for the name of the controller manager and for unloading the controllers at the end.
 
     Args:
-        controller_names: the controllers.
-        controller_params_files: their parameter files; empty ones are skipped.
+        controller_names: the names of the controllers.
+        controller_params_files: the parameter files of the controllers; empty names are skipped.
         extra_spawner_args: further arguments of the spawner.
     """
     files = [word for file in controller_params_files or () if file for word in ("--param-file", file)]
@@ -48,10 +50,12 @@ def generate_controllers_spawner_launch_description(
 def generate_controllers_spawner_launch_description_from_dict(
     controller_info_dict: Mapping[str, Any], extra_spawner_args: Sequence[Any] = ()
 ) -> LaunchDescription:
-    """Return a spawner for a mapping: controller -> its parameter file, a list of them, or None.
+    """Return a launch description that spawns controllers, given as a mapping.
+
+    The mapping is controller -> its parameter file, a list of files, or None.
 
     Raises:
-        ValueError: it is not a mapping, or a file has another type.
+        ValueError: the argument is not a mapping, or a file has another type.
     """
     if not isinstance(controller_info_dict, Mapping):
         raise ValueError(f"Invalid controller_info_dict type parsed {controller_info_dict}")  # noqa: TRY004 - as in controller_manager
@@ -69,12 +73,12 @@ def generate_load_controller_launch_description(
     controller_params_file: Any = None,
     extra_spawner_args: Sequence[Any] = (),
 ) -> LaunchDescription:
-    """Return a spawner for one controller, with Humble's order of arguments.
+    """Return a launch description that spawns one controller, with the order of arguments of Humble.
 
     Args:
-        controller_name: the controller.
-        controller_type: its plugin, if its parameters do not set it.
-        controller_params_file: its parameter file.
+        controller_name: the name of the controller.
+        controller_type: the controller's plugin, if its parameters do not set it.
+        controller_params_file: the controller's parameter file.
         extra_spawner_args: further arguments of the spawner.
     """
     words = [controller_name, *(("--controller-type", controller_type) if controller_type else ())]

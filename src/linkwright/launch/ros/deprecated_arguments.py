@@ -1,6 +1,7 @@
-"""Keyword arguments with their names up to ROS 2 Foxy, such as ``node_executable`` for ``executable``.
+"""Keyword arguments under their names up to ROS 2 Foxy.
 
-Launch files of that time are still in use, and nothing else in them is outdated.
+An example is ``node_executable`` for ``executable``. Launch files from that time are still in use, and nothing else in
+them is outdated.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ _Class = TypeVar("_Class", bound=type)
 
 
 def with_deprecated_arguments(**present: str) -> Callable[[_Class], _Class]:
-    """Make a class accept former names of keyword arguments, with a warning that gives the current ones.
+    """Make a class accept former names of keyword arguments, with a warning that gives the current names.
 
     Args:
         present: former name -> current name.

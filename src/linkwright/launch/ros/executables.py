@@ -1,4 +1,4 @@
-"""Executables of packages: our own, installed ones, and those of packages that exist only as sources."""
+"""Executables of packages: Linkwright's own, installed ones, and those in sources."""
 
 from __future__ import annotations
 
@@ -30,13 +30,14 @@ from linkwright.packages.programs.child_python import python_command
 if TYPE_CHECKING:
     from linkwright.packages.readers.entry_points import EntryPoint
 
-# The readers of sources and scripts are imported where they are used: a launch of our own nodes does not need them.
+# The readers of sources and scripts are imported where they are used, because a launch of our own nodes does not need
+# them.
 
 BUILT_IN = "built into Linkwright"
 
 
 class Origin(Enum):
-    """The origin of an executable."""
+    """Where an executable comes from."""
 
     OURS = "ours"
     INSTALLED = "installed"
@@ -48,10 +49,10 @@ class Executable:
     """A program of a package.
 
     Attributes:
-        package: the package.
-        name: its name there.
-        origin: its origin.
-        path: its file; None for one of ours, and for an entry point without a file yet.
+        package: the name of the package.
+        name: the name of the program in the package.
+        origin: where the program comes from.
+        path: the path of the program; None for one of ours, and for an entry point that has no file yet.
         entry_point: the function of an entry point in sources.
     """
 
@@ -63,7 +64,7 @@ class Executable:
 
     @property
     def command(self) -> list[str]:
-        """Return the words of its command."""
+        """The words of the command that runs the program."""
         from linkwright.packages.programs.interpreters import interpreter_words, needs_our_interpreter
 
         if self.path is None:
@@ -72,7 +73,7 @@ class Executable:
             return python_command([str(self.path)])
         if os.access(self.path, os.X_OK):
             return [str(self.path)]
-        words = interpreter_words(self.path)  # a script that only installation would make executable
+        words = interpreter_words(self.path)  # only an installation would make the script executable
         return [*words, str(self.path)] if words else python_command([str(self.path)])
 
     def __str__(self) -> str:
@@ -80,7 +81,7 @@ class Executable:
 
 
 def is_hosted(package: str | None, executable: str) -> bool:
-    """Return whether a node is one of ours, which runs in this process."""
+    """Return whether a node is one of Linkwright's, which can run in this process."""
     if is_viewer(package, executable):
         return True
     from linkwright.nodes import EXECUTABLES
@@ -101,7 +102,7 @@ def builtin_packages() -> set[str]:
 
 
 def executables_of(finder: PackageFinder, package: str) -> dict[str, Executable]:
-    """Return the programs of a package by name; ours come first, then built ones, then those of sources.
+    """Return the programs of a package by name; ours take precedence, then built ones, then sources.
 
     Raises:
         PackageNotFoundError: PKG101, there is no such package.
@@ -126,7 +127,10 @@ def executables_of(finder: PackageFinder, package: str) -> dict[str, Executable]
 
 
 def installed_executable(finder: PackageFinder, package: str, name: str) -> Executable | None:
-    """Return a built program of a package, even if one of ours has its name, or None."""
+    """Return a built program of a package, or None.
+
+    It is returned even if one of ours has the same name.
+    """
     share = finder.find(package)
     return (
         None
@@ -139,8 +143,8 @@ def find_executable(finder: PackageFinder, package: str, name: str) -> Executabl
     """Return a program of a package, with a file to run unless it is one of ours.
 
     Raises:
-        LinkwrightError: LAUNCH131, with the searched paths and similar names; as launch_ros raises PackageNotFoundError
-            (PKG101), the error is a LookupError. It is marked as `unavailable` for a program of others.
+        LinkwrightError: LAUNCH131, with the searched paths and similar names. The error is also a LookupError, because
+            launch_ros raises PackageNotFoundError (PKG101). For third-party programs, it is marked as `unavailable`.
     """
     try:
         present = executables_of(finder, package)
@@ -188,7 +192,7 @@ def _script(finder: PackageFinder, executable: Executable) -> Path:
 
 
 def _check_module(executable: Executable, entry: EntryPoint, root: Path) -> None:
-    """Check that the module of an entry point exists, before a process is started."""
+    """Check that the module of an entry point exists before a process is started."""
     from linkwright.packages.programs.source_programs import module_file
 
     top = entry.module.partition(".")[0]
@@ -285,7 +289,10 @@ def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:
 
 
 def _not_known_from_sources(package: str, name: str, share: Path) -> LinkwrightError:
-    """Return the error for a program that the package may have, although the files here do not show it."""
+    """Return the error for a program that a package's sources do not show.
+
+    The package may nevertheless provide the program.
+    """
     message = phrase("executable '{name}' of package '{package}' is not available", name=name, package=package)
     note = Note(phrase("the files in {share} do not show which programs it builds", share=display_path(share)))
     advice = phrase(

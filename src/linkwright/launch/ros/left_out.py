@@ -1,4 +1,7 @@
-"""Nodes that a launch skips, and nav2's lifecycle manager, which would wait for them forever."""
+"""Nodes that a launch skips.
+
+They are removed from nav2's lifecycle manager, which would wait for them forever.
+"""
 
 from __future__ import annotations
 
@@ -12,19 +15,25 @@ _MANAGED = "node_names"
 
 
 def leave_out(context: LaunchContext, name: str) -> None:
-    """Record a skipped node, by its name without its namespace."""
+    """Record a skipped node by its name without the namespace."""
     context.session.left_out.add(name)
 
 
 def without_left_out(context: LaunchContext, package: str, parameters: dict[str, Any]) -> dict[str, Any]:
-    """Return the parameters of a node; those of a lifecycle manager omit the nodes that were skipped before it."""
+    """Return the parameters of a node.
+
+    For a lifecycle manager, they omit the nodes skipped so far.
+    """
     if package != _MANAGER or not isinstance(parameters.get(_MANAGED), Iterable):
         return parameters
     return {**parameters, _MANAGED: _present(context, parameters[_MANAGED])}
 
 
 def drop_left_out(context: LaunchContext, request: Any) -> None:
-    """Omit skipped nodes as `without_left_out` does, in the request to load a component."""
+    """Remove skipped nodes from a request to load a lifecycle manager.
+
+    See `without_left_out`.
+    """
     if request.package_name != _MANAGER:
         return
     for parameter in request.parameters:

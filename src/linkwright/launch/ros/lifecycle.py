@@ -1,4 +1,4 @@
-"""Lifecycle nodes in the launcher, which requests and follows their transitions."""
+"""Lifecycle nodes of a launch: the launcher requests and monitors their transitions."""
 
 from __future__ import annotations
 
@@ -35,7 +35,9 @@ _DEPTH = 10
 
 
 class LifecycleEventManager:
-    """Emits `StateTransition` events of a lifecycle node, and requests the transitions of `ChangeState` events.
+    """Emits `StateTransition` events of a lifecycle node, and handles `ChangeState` events.
+
+    On the latter, it requests the transition from the node.
 
     Args:
         lifecycle_node: the action or description of the node; its ``node_name`` is the full name.
@@ -52,7 +54,7 @@ class LifecycleEventManager:
         return str(self._node.node_name)
 
     def setup_lifecycle_manager(self, context: LaunchContext) -> None:
-        """Start to follow the node."""
+        """Start monitoring the node."""
         launcher = context.session.host.launcher_node
         launcher.create_subscription(
             "lifecycle_msgs/msg/TransitionEvent",
@@ -88,7 +90,7 @@ class LifecycleEventManager:
 
 
 async def answered(context: LaunchContext, client: Any, request: Any) -> Any:
-    """Wait for a service and return its response, or None if the launch ends first."""
+    """Wait for a service, call it and return its response, or None if the launch ends first."""
     future = client.call_async(request)
     while not future.done():
         if context.is_shutdown:
@@ -102,7 +104,7 @@ async def answered(context: LaunchContext, client: Any, request: Any) -> Any:
 
 
 async def _done_or_time(future: Any) -> None:
-    """Wait briefly for a future."""
+    """Wait for a future for a short time."""
     loop = asyncio.get_running_loop()
     woken = loop.create_future()
 
@@ -121,12 +123,12 @@ async def _done_or_time(future: Any) -> None:
 @expose_action("lifecycle_node")
 @with_deprecated_arguments(node_executable="executable", node_name="name", node_namespace="namespace")
 class LifecycleNode(Node):
-    """Starts a lifecycle node, and follows its state.
+    """Starts a lifecycle node, and monitors its state.
 
     Args:
         name: the node's name.
-        namespace: its namespace.
-        autostart: whether it is configured and activated when it has started.
+        namespace: the node's namespace.
+        autostart: whether the node is configured and activated when it has started.
         kwargs: see `Node`.
     """
 
@@ -141,7 +143,7 @@ class LifecycleNode(Node):
     def parse(
         cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
     ) -> tuple[type[Action], dict[str, Any]]:
-        """Read the tag: that of a node, with ``autostart``."""
+        """Read the attributes of a node's tag, and ``autostart``."""
         _, kwargs = super().parse(entity, parser, ignore)
         autostart = entity.get_attr("autostart", data_type=bool, optional=True)
         if autostart is not None:
@@ -150,16 +152,16 @@ class LifecycleNode(Node):
 
     @property
     def node_autostart(self) -> Any:
-        """Whether it is configured and activated when it has started."""
+        """Whether the node is configured and activated when it has started."""
         return self.__autostart
 
     @property
     def current_state(self) -> str:
-        """The name of its last known state."""
+        """The name of the node's last known state."""
         return self.__manager.current_state
 
     def execute(self, context: LaunchContext) -> list[Any] | None:
-        """Start and follow the node.
+        """Start the node, and monitor its state.
 
         Raises:
             LinkwrightError: see `Node.execute`.
@@ -175,14 +177,17 @@ class LifecycleNode(Node):
 
 
 def autostarts(context: LaunchContext, value: Any) -> bool:
-    """Return whether ``autostart`` of a lifecycle node is true."""
+    """Return whether the ``autostart`` of a lifecycle node is true."""
     from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
 
     return bool(perform_typed_substitution(context, normalize_typed_substitution(value, bool), bool))
 
 
 def autostart_actions(action: Any) -> list[Any]:
-    """Return handlers that configure a lifecycle node when it has started, and activate it when it is configured."""
+    """Return event handlers that configure and activate a lifecycle node.
+
+    It is configured when it has started, and activated when it is configured.
+    """
     change = {
         number: EmitEvent(event=ChangeState(lifecycle_node_matcher=events.matches_action(action), transition_id=number))
         for number in (_CONFIGURE, _ACTIVATE)
@@ -197,6 +202,6 @@ def autostart_actions(action: Any) -> list[Any]:
 
 
 def unknown_transition(place: Any, text: str) -> Exception:
-    """Return the error about a transition that is not a number."""
+    """Return the error for a transition that is not a number."""
     message = phrase("expected integer for lifecycle transition, got {text}", text=text)
     return error_at(place, "LAUNCH138", message, ros_error=ValueError(message))

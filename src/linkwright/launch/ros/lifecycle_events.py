@@ -1,4 +1,4 @@
-"""Events of lifecycle nodes, and the handler for their transitions (``launch_ros.events.lifecycle``)."""
+"""Events of lifecycle nodes, and a handler for them (``launch_ros.events.lifecycle``)."""
 
 from __future__ import annotations
 
@@ -47,11 +47,12 @@ NodeMatcher = Callable[[Any], bool]
 
 
 class ChangeState(Event):
-    """A request for a transition of the lifecycle nodes that the matcher accepts.
+    """A request that the lifecycle nodes that the matcher accepts make a transition.
 
     Args:
-        lifecycle_node_matcher: called with the action of each lifecycle node.
-        transition_id: the transition, see `TRANSITIONS`.
+        lifecycle_node_matcher: called with the action of each lifecycle node; returns whether the request applies to
+            it.
+        transition_id: the ID of the transition, see `TRANSITIONS`.
     """
 
     name = "launch_ros.events.lifecycle.ChangeState"
@@ -76,11 +77,11 @@ class ChangeState(Event):
 
 
 class StateTransition(Event):
-    """A lifecycle node has made a transition.
+    """The event that a lifecycle node has made a transition.
 
     Args:
         action: the action of the node.
-        msg: its message, a ``lifecycle_msgs/msg/TransitionEvent``.
+        msg: the node's message, a ``lifecycle_msgs/msg/TransitionEvent``.
     """
 
     name = "launch_ros.events.lifecycle.StateTransition"
@@ -92,7 +93,7 @@ class StateTransition(Event):
 
     @property
     def timestamp(self) -> int:
-        """The time in nanoseconds on the node's clock."""
+        """The time of the transition in nanoseconds on the node's clock."""
         return int(self.msg.timestamp)
 
     @property
@@ -102,25 +103,27 @@ class StateTransition(Event):
 
     @property
     def start_state(self) -> str:
-        """The state before, such as ``unconfigured``."""
+        """The state before the transition, such as ``unconfigured``."""
         return str(self.msg.start_state.label)
 
     @property
     def goal_state(self) -> str:
-        """The state after, such as ``inactive``."""
+        """The state after the transition, such as ``inactive``."""
         return str(self.msg.goal_state.label)
 
 
 class OnStateTransition(EventHandler):
-    """Visits entities when a lifecycle node has made a transition; omitted arguments match any.
+    """Visits entities when a lifecycle node has made a transition.
+
+    Omitted arguments match any value.
 
     Args:
         entities: the entities to visit.
         target_lifecycle_node: the action of the node.
-        transition: name of the transition.
-        start_state: name of the state before.
-        goal_state: name of the state after.
-        matcher: called with the event, in place of all these.
+        transition: the name of the transition.
+        start_state: the name of the state before the transition.
+        goal_state: the name of the state after the transition.
+        matcher: called with the event, and used instead of the target, transition and states.
     """
 
     def __init__(
@@ -155,18 +158,21 @@ class OnStateTransition(EventHandler):
 
     @property
     def handler_description(self) -> str:
-        """A text about the reaction."""
+        """A text that describes the reaction."""
         return "<actions>"
 
     @property
     def matcher_description(self) -> str:
-        """A text about the events."""
+        """A text that describes the accepted events."""
         if self._target is None:
             return "event == StateTransition"
         return f"event == StateTransition and event.action == LifecycleNode({hex(id(self._target))})"
 
 
 def matches_node_name(node_name: str) -> NodeMatcher:
-    """Return a matcher that accepts the action of the node with a full name; a missing leading slash is added."""
+    """Return a matcher that accepts the action of the node with a full name.
+
+    A missing leading slash is added to the name.
+    """
     full_name = node_name if node_name.startswith("/") else f"/{node_name}"
     return lambda action: action.node_name == full_name

@@ -40,8 +40,8 @@ class LifecycleTransition(Action):
     """Requests transitions of lifecycle nodes, one after another; an error ends the sequence.
 
     Args:
-        lifecycle_node_names: the nodes' names; a missing first slash is added.
-        transition_ids: the transitions' numbers.
+        lifecycle_node_names: the names of the nodes; a missing leading slash is added.
+        transition_ids: the IDs of the transitions.
     """
 
     transition_targets: ClassVar[dict[int, dict[str, str]]] = {
@@ -64,7 +64,7 @@ class LifecycleTransition(Action):
         self._handlers: dict[str, list[BaseEventHandler]] = {}
 
     def execute(self, context: LaunchContext) -> list[Action]:
-        """Register the handlers for the later transitions, and request the first ones.
+        """Return actions that handle the later transitions and request the first ones.
 
         Raises:
             LinkwrightError: LAUNCH138, a transition is not a number, or does not end in a state.
@@ -106,7 +106,7 @@ class LifecycleTransition(Action):
                 text = f"Stopping transitions for {name} because '{reason}'"
                 context.session.log.info_line("launch_ros.actions.lifecycle_transition", text)
             for handler in self._handlers.pop(name, ()):
-                with suppress(ValueError):  # it has handled its event and is unregistered
+                with suppress(ValueError):  # raised if the handler was already unregistered after its event
                     context.unregister_event_handler(handler)
 
         return OpaqueFunction(function=end)

@@ -1,4 +1,7 @@
-"""Names of nodes, namespaces, remapping rules, and the number of started nodes with a name."""
+"""Names of nodes, namespaces and remapping rules.
+
+The number of nodes that were started under a name is counted, too.
+"""
 
 from __future__ import annotations
 
@@ -34,11 +37,13 @@ def make_namespace_absolute(ns: str | None) -> str | None:
 
 
 def prefix_namespace(base_ns: str | None, ns: str | None, *, return_absolute_ns: bool = False) -> str | None:
-    """Return a namespace inside another; an absolute one stays as it is, and None means not given.
+    """Return a namespace nested in another.
+
+    An absolute namespace stays unchanged, and None means not given.
 
     Args:
-        base_ns: the outer one.
-        ns: the inner one.
+        base_ns: the outer namespace.
+        ns: the inner namespace.
         return_absolute_ns: whether to add a leading slash.
     """
     if ns is None:
@@ -55,17 +60,20 @@ def prefix_namespace(base_ns: str | None, ns: str | None, *, return_absolute_ns:
 
 
 def add_node_name(context: Any, node_name: str) -> None:
-    """Record the start of a node with a full name."""
+    """Record the start of a node under its full name."""
     _counts(context)[node_name] += 1
 
 
 def get_node_name_count(context: Any, node_name: str) -> int:
-    """Return the number of nodes with a full name that were started in the launch."""
+    """Return the number of nodes that the launch started under a full name."""
     return _counts(context).get(node_name, 0)
 
 
 def repeated_name(context: Any, node_name: str) -> str | None:
-    """Record a node, and return a warning if there is another with its name, or None."""
+    """Record the start of a node, and return a warning or None.
+
+    The warning is about another node with the same name.
+    """
     add_node_name(context, node_name)
     count = get_node_name_count(context, node_name)
     if count < 2:
@@ -83,10 +91,10 @@ def _counts(context: Any) -> defaultdict[str, int]:
 
 
 def check_name(name: str) -> str:
-    """Check and return a node name.
+    """Return a node name if it is valid.
 
     Raises:
-        LinkwrightError: LAUNCH134, it is not valid.
+        LinkwrightError: LAUNCH134, the name is not valid.
     """
     from linkwright.graph.names.rules import InvalidNameError, check_node_name
 
@@ -99,10 +107,10 @@ def check_name(name: str) -> str:
 
 
 def check_namespace(namespace: str) -> str:
-    """Check a namespace, and return it as an absolute one.
+    """Return a namespace as an absolute one if it is valid.
 
     Raises:
-        LinkwrightError: LAUNCH134, it is not valid.
+        LinkwrightError: LAUNCH134, the namespace is not valid.
     """
     from linkwright.graph.names.rules import InvalidNameError, absolute_namespace
 
@@ -118,10 +126,10 @@ RemapRule = tuple[tuple[Substitution, ...], tuple[Substitution, ...]]
 
 
 def normalize_remap_rule(remap_rule: Any) -> RemapRule:
-    """Return a pair of names as tuples of substitutions.
+    """Convert a pair of names to tuples of substitutions.
 
     Raises:
-        TypeError: LAUNCH135, it is not a pair of names.
+        TypeError: LAUNCH135, the argument is not a pair of names.
     """
     if not isinstance(remap_rule, tuple) or len(remap_rule) != 2:
         hint = phrase("write a pair: remappings=[('from', 'to')]")
@@ -133,10 +141,10 @@ def normalize_remap_rule(remap_rule: Any) -> RemapRule:
 
 
 def normalize_remap_rules(remap_rules: Iterable[Any]) -> Iterable[RemapRule]:
-    """Return several pairs of names as tuples of substitutions.
+    """Convert pairs of names to tuples of substitutions.
 
     Raises:
-        TypeError: LAUNCH135, they are not pairs of names.
+        TypeError: LAUNCH135, the arguments are not pairs of names.
     """
     if isinstance(remap_rules, (str, dict)) or not isinstance(remap_rules, Iterable):
         message = phrase("'remappings' must be a list of pairs of names, not {name}", name=type(remap_rules).__name__)
@@ -146,7 +154,7 @@ def normalize_remap_rules(remap_rules: Iterable[Any]) -> Iterable[RemapRule]:
 
 
 def evaluated_rules(context: LaunchContext, rules: Iterable[RemapRule]) -> list[tuple[str, str]]:
-    """Evaluate the names of the pairs."""
+    """Evaluate remapping rules, and return them as pairs of names."""
     return [
         (perform_substitutions(context, source), perform_substitutions(context, target)) for source, target in rules
     ]

@@ -58,26 +58,29 @@ _OF_A_PROCESS = re.compile(r"(ROS|RCUTILS|RMW|CYCLONEDDS|ZENOH|LINKWRIGHT)_")
 @expose_action("node")
 @with_deprecated_arguments(node_executable="executable", node_name="name", node_namespace="namespace")
 class Node(ExecuteProcess):
-    """Starts a node: one of ours in the launcher's process, any other in its own process.
+    """Starts a node.
+
+    A Linkwright node runs in the launcher's process, any other node in a separate process.
 
     Args:
-        executable: its executable in the package, or a program if no package is given.
-        package: the package.
-        name: the name it is given.
-        namespace: its namespace, inside those of `PushRosNamespace` unless it starts with a slash.
-        exec_name: its name in the log.
+        executable: the node's executable in the package, or a program if no package is given.
+        package: the package of the executable.
+        name: the name to give to the node.
+        namespace: the namespace of the node, inside the namespaces of `PushRosNamespace` unless it starts with a slash.
+        exec_name: the name of the process in the log.
         parameters: dictionaries, paths of YAML files, `ParameterFile` and `Parameter` objects; later ones take
             precedence.
         remappings: pairs of names.
         ros_arguments: further arguments after ``--ros-args``.
-        arguments: its command line.
+        arguments: the command-line arguments.
         kwargs: see `ExecuteProcess`.
     """
 
     UNSPECIFIED_NODE_NAME = "<node_name_unspecified>"
     UNSPECIFIED_NODE_NAMESPACE = "<node_namespace_unspecified>"
 
-    # Set once it is started. Programs that use the internals of launch_ros expect these names.
+    # These attributes are set when the node is started. Programs that use the internals of launch_ros expect their
+    # names.
     __substitutions_performed: bool
     __expanded_node_name: str
     __expanded_node_namespace: str
@@ -127,13 +130,16 @@ class Node(ExecuteProcess):
     def parse(
         cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
     ) -> tuple[type[Action], dict[str, Any]]:
-        """Read the tag: that of a process, with ``pkg``, ``exec``, ``param``, ``remap`` and so on."""
+        """Read the attributes of a process's tag, and the additional ones of a node.
+
+        These are ``pkg``, ``exec``, ``param``, ``remap`` and so on.
+        """
         _, kwargs = super().parse(entity, parser, ignore=["cmd", *(ignore or ())])
         return cls, parse_node(entity, parser, kwargs, cls)
 
     @staticmethod
     def parse_nested_parameters(params: list[Entity], parser: Parser) -> list[Any]:
-        """The parameters in ``param`` tags."""
+        """Return the parameters in ``param`` tags."""
         from linkwright.launch.ros.parsing import parse_parameters
 
         return parse_parameters(params, parser)
@@ -168,22 +174,22 @@ class Node(ExecuteProcess):
 
     @property
     def expanded_remapping_rules(self) -> list[tuple[str, str]] | None:
-        """The remappings, those of the scope first; None if there are none."""
+        """The remappings, starting with those of the scope; None if there are none."""
         return self.__expanded_remappings
 
     def is_node_name_fully_specified(self) -> bool:
-        """Return whether both name and namespace are given."""
+        """Return whether both the name and the namespace are given."""
         unspecified = (self.UNSPECIFIED_NODE_NAME, self.UNSPECIFIED_NODE_NAMESPACE)
         return all(part not in self.node_name for part in unspecified)
 
-    # --- the run --------------------------------------------------------------------------------------------
+    # --- execution ------------------------------------------------------------------------------------------
 
     def execute(self, context: LaunchContext) -> list[Any] | None:
-        """Start it.
+        """Start the node.
 
         Raises:
             DescriptionError: a parameter is a model with errors.
-            LinkwrightError: other errors.
+            LinkwrightError: any other error of the node's description or executable.
         """
         if context.is_shutdown:
             return None
@@ -206,7 +212,10 @@ class Node(ExecuteProcess):
         return None
 
     def __extended(self, context: LaunchContext) -> list[Any]:
-        """Let the extensions change name and namespace, and return their additions to the command line."""
+        """Let extensions change the name and namespace.
+
+        Return what they add to the command line.
+        """
         added: list[Any] = []
         given: dict[str, Any] = {}
         if self.__node_name is not None:
@@ -221,11 +230,11 @@ class Node(ExecuteProcess):
         return added
 
     def viewer_config(self, context: LaunchContext) -> Callable[[], RvizConfig] | None:
-        """Return the factory of a viewer's configuration; None to use its command line."""
+        """Return a factory of the viewer's configuration, or None to take it from the command line."""
         return None
 
     def _perform_substitutions(self, context: LaunchContext) -> None:
-        """Evaluate name, namespace, parameters and remappings, and the rest of the command."""
+        """Evaluate the name, namespace, parameters and remappings, and the rest of the command."""
         if self.__substitutions_performed:
             return
         try:
@@ -251,7 +260,10 @@ class Node(ExecuteProcess):
         self.__substitutions_performed = True
 
     def __forget(self) -> None:
-        """Reset the state: an action may be visited again after the repair of a model that it needs."""
+        """Reset the state for another visit.
+
+        The action may be visited again after the model it needs was fixed.
+        """
         del self.cmd[self.__fixed_words :]
         self.__substitutions_performed = False
         self.__expanded_node_name = self.UNSPECIFIED_NODE_NAME
@@ -264,7 +276,7 @@ class Node(ExecuteProcess):
         self.__expanded_remappings = None
 
     def _expand_names(self, context: LaunchContext) -> None:
-        """Evaluate name and namespace."""
+        """Evaluate the name and namespace."""
         if self.__node_name is not None:
             self.__expanded_node_name = check_name(_text(context, self.__node_name))
         own = None if self.__node_namespace is None else _text(context, self.__node_namespace)
@@ -274,9 +286,10 @@ class Node(ExecuteProcess):
         self.__final_node_name = f"{self.__expanded_node_namespace.rstrip('/')}/{self.__expanded_node_name}"
 
     def __name_in_files(self, context: LaunchContext) -> str | None:
-        """Return the full name in parameter files; None if only the program knows it.
+        """Return the full name by which parameter files name the node.
 
-        A container also runs other nodes, to which its files may apply.
+        The result is None if only the program knows it. A container runs other nodes, too, to which its files may
+        apply.
         """
         package = None if self.__package is None else _text(context, self.__package)
         if self.__node_name is None or package == _CONTAINERS:
@@ -287,9 +300,9 @@ class Node(ExecuteProcess):
 
     @property
     def __expanded_parameter_arguments(self) -> list[tuple[str, bool]]:
-        """Return the parameter arguments of the command line, each with whether it is a file, written on demand.
+        """The parameter arguments of the command line, each with whether it is a file.
 
-        As in launch_ros, only the files among the scope's parameters count here.
+        Files are written on first use. As in launch_ros, only files are included from the parameters of the scope.
         """
         if self.__parameter_words is None:
             folder = self.__scratch_folder if self.__scratch_folder and self.__scratch_folder.is_dir() else None
@@ -312,7 +325,7 @@ class Node(ExecuteProcess):
     # --- in the launcher's process ----------------------------------------------------------------------------
 
     def _may_be_hosted(self, context: LaunchContext, package: str | None, executable: str) -> bool:
-        """Return whether the node needs no separate process."""
+        """Return whether the node can run in the launcher's process."""
         if is_viewer(package, executable):
             return True
         if context.session.isolates_nodes or self.__own_environment[0] is not None:
@@ -338,7 +351,7 @@ class Node(ExecuteProcess):
         full_name = f"{namespace.rstrip('/')}/{own_name or executable}"
         if (
             name is None and own_name is not None and package != _CONTAINERS
-        ):  # otherwise it has been checked, or cannot be checked
+        ):  # otherwise the parameters were checked before, or cannot be checked
             self.__node_parameters.check(context, full_name, self.place)
         plan = HostedPlan(
             self,
@@ -361,7 +374,7 @@ class Node(ExecuteProcess):
         session.host.plan(plan)
         return plan.process_name
 
-    # --- as a process -----------------------------------------------------------------------------------------
+    # --- in a separate process --------------------------------------------------------------------------------
 
     def _run(self, context: LaunchContext, package: str | None, executable: str) -> str:
         arguments = [perform_substitutions(context, word) for word in self.cmd[1:]]
@@ -384,7 +397,7 @@ class Node(ExecuteProcess):
         plan = super()._plan(context, command)
         if self.process_description.name is not None:
             return plan
-        # Named after its executable, even if an interpreter runs it or it is one of ours.
+        # The process is named after its executable, even if an interpreter runs it or the node is one of ours.
         return replace(plan, name=Path(_text(context, self.__node_executable)).name)
 
     def _environment(self, context: LaunchContext) -> dict[str, str]:
@@ -392,11 +405,11 @@ class Node(ExecuteProcess):
 
 
 class _Assigned(Substitution):
-    """A word of the command line that the action sets when it starts the node.
+    """A word of the command line that is known only when the action starts the node.
 
     Args:
-        what: its name for listings.
-        word: returns it.
+        what: the name of the word in listings.
+        word: the function that returns the word.
     """
 
     def __init__(self, what: str, word: Callable[[], str]) -> None:
@@ -404,16 +417,16 @@ class _Assigned(Substitution):
         self._word = word
 
     def describe(self) -> str:
-        """Return its name."""
+        """Return a text with the name of the word."""
         return f"LocalVar('ros_specific_arguments['{self._what}']')"
 
     def perform(self, context: LaunchContext) -> str:
-        """The word."""
+        """Return the word."""
         return self._word()
 
 
 def _listed(values: Any) -> list[Any]:
-    """Return one or more words as a list."""
+    """Return a single word or several words as a list."""
     if values is None:
         return []
     return [values] if isinstance(values, (str, Substitution)) or not isinstance(values, Iterable) else list(values)
@@ -426,5 +439,5 @@ def _text(context: LaunchContext, value: Any) -> str:
 def _scratch_folder(context: LaunchContext) -> Path | None:
     try:
         return context.session.scratch_folder
-    except (AttributeError, RuntimeError):  # no launch runs in this context
+    except (AttributeError, RuntimeError):  # no launch is running in this context
         return None

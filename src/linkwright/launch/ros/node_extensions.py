@@ -1,4 +1,7 @@
-"""Extensions of the node action in users' packages, which run before a node is started."""
+"""Extensions of the node action.
+
+Users' packages provide them, and they run before a node is started.
+"""
 
 from __future__ import annotations
 
@@ -18,11 +21,11 @@ GROUP = "launch_ros.node_action"
 
 
 class NodeActionExtension:
-    """The base of extensions of `Node`.
+    """The base class of extensions of `Node`.
 
     Attributes:
-        NAME: the name of its entry point, if it has one.
-        EXTENSION_POINT_VERSION: the version of the interface that it implements.
+        NAME: the name of the extension's entry point, if it has one.
+        EXTENSION_POINT_VERSION: the version of the interface that the extension implements.
     """
 
     NAME: str | None = None
@@ -31,15 +34,15 @@ class NodeActionExtension:
     def prepare_for_execute(
         self, context: LaunchContext, ros_specific_arguments: dict[str, Any], node_action: Action
     ) -> tuple[Sequence[Any], dict[str, Any]]:
-        """Change a node before it is started.
+        """Modify a node before it is started.
 
         Args:
             context: the context of the launch.
             ros_specific_arguments: the given ``name`` and ``ns``, such as ``__node:=talker``.
-            node_action: the action.
+            node_action: the action that starts the node.
 
         Returns:
-            Substitutions to append to the command line, and the arguments, which may be changed.
+            Substitutions to append to the command line, and the arguments, which may be modified.
         """
         del context, node_action
         return [], ros_specific_arguments
@@ -47,10 +50,10 @@ class NodeActionExtension:
 
 @cache
 def node_extensions() -> tuple[NodeActionExtension, ...]:
-    """Return an object of each installed extension.
+    """Return an instance of each installed extension.
 
     Raises:
-        LinkwrightError: LAUNCH155, one of them cannot be loaded.
+        LinkwrightError: LAUNCH155, an extension cannot be loaded.
     """
     found = []
     for name, entry in extensions(GROUP).items():

@@ -1,4 +1,4 @@
-"""Parameter files for ``parameters`` of a node (``launch_ros.parameter_descriptions.ParameterFile``)."""
+"""Parameter files for nodes (``launch_ros.parameter_descriptions.ParameterFile``)."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ class ParameterFile(Placed):
     """A parameter file.
 
     Args:
-        param_file: its path.
-        allow_substs: whether substitutions in it, such as ``$(var NAME)``, are evaluated.
+        param_file: the path of the file.
+        allow_substs: whether substitutions in the file, such as ``$(var NAME)``, are evaluated.
     """
 
     def __init__(
@@ -68,19 +68,22 @@ class ParameterFile(Placed):
 
     @property
     def param_file(self) -> list[Substitution] | Path:
-        """The path as substitutions, or after evaluation the path of the evaluated file."""
+        """The path as substitutions, or the path of the evaluated file after evaluation."""
         return self._param_file if self._evaluated is None else self._evaluated
 
     @property
     def allow_substs(self) -> Any:
-        """Whether substitutions in it are evaluated."""
+        """Whether substitutions in the file are evaluated."""
         return self._allow_substs if self._allowed is None else self._allowed
 
     def evaluate(self, context: LaunchContext) -> Path:
-        """Return the path of the file, or of a temporary file with evaluated substitutions.
+        """Return the path of the file, or of a copy with evaluated substitutions.
+
+        The copy is a temporary file.
 
         Raises:
-            LinkwrightError: LAUNCH133, the errors in a file with substitutions; also a SubstitutionFailure.
+            LinkwrightError: LAUNCH133, the errors in a file with substitutions; the error is a SubstitutionFailure,
+                too.
         """
         if self._evaluated is None:
             path = Path(perform_substitutions(context, self._param_file))
@@ -178,10 +181,10 @@ _QUOTED = re.compile(r"\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\n]|'')*'")
 
 
 def substitute_text(source: SourceText, context: LaunchContext) -> str:
-    """Return the text of a YAML file with substitutions evaluated, except in comments.
+    """Return the text of a YAML file with its substitutions evaluated, except in comments.
 
     Raises:
-        LinkwrightError: LAUNCH119 and others, a substitution is unknown or has no value; with its location.
+        LinkwrightError: LAUNCH119 and others, with the location of a substitution that is unknown or has no value.
     """
     Parser.load_launch_extensions()
     text = source.text

@@ -1,8 +1,8 @@
-"""Normalization and evaluation of the ``parameters`` of a node (``launch_ros.utilities``).
+"""Normalization and evaluation of a node's ``parameters`` (``launch_ros.utilities``).
 
-They are normalized, and thus checked, when the node is created: paths become `ParameterFile`, and dictionaries become
-flat, with tuples of substitutions for names and either plain values or tuples of substitutions for values. Evaluation
-gives for each item a path, a dictionary of values by name, or a `Parameter`.
+They are normalized, and thus checked, when the node is created. Paths become `ParameterFile` objects, and dictionaries
+become flat, with tuples of substitutions for names and either plain values or tuples of substitutions for values.
+Evaluation converts each item to a path, a dictionary of values by name, or a `Parameter`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ NormalizedDict = dict[Name, Any]
 
 
 class PlainItem(TextSubstitution):
-    """A value among substitutions that keeps its type; a string is not read as YAML.
+    """A value among substitutions that keeps its type, so that a string is not read as YAML.
 
     Attributes:
         value: the value.
@@ -43,7 +43,7 @@ def normalize_parameters(parameters: Any) -> tuple[Any, ...]:
     """Normalize the ``parameters`` of a node.
 
     Raises:
-        LinkwrightError: LAUNCH132, they are not a list, or an item is invalid; also a TypeError.
+        LinkwrightError: LAUNCH132, they are not a list, or an item is invalid; the error is a TypeError, too.
     """
     place = Place.of_caller()
     if isinstance(parameters, (str, Mapping)) or not isinstance(parameters, Sequence):
@@ -56,10 +56,10 @@ def normalize_parameters(parameters: Any) -> tuple[Any, ...]:
 def normalize_parameter_dict(
     parameters: Mapping[Any, Any], *, _prefix: Sequence[Substitution] | None = None
 ) -> NormalizedDict:
-    """Normalize a dictionary of parameters; nested ones give names with dots.
+    """Normalize a dictionary of parameters; nested dictionaries become names with dots.
 
     Raises:
-        LinkwrightError: LAUNCH132, a name or value is invalid for a parameter; also a TypeError.
+        LinkwrightError: LAUNCH132, a name or value is invalid for a parameter; the error is a TypeError, too.
     """
     if not isinstance(parameters, Mapping):
         raise TypeError("expected dict")
@@ -76,7 +76,7 @@ def normalize_parameter_dict(
 
 
 def evaluate_parameters(context: LaunchContext, parameters: Iterable[Any]) -> tuple[Any, ...]:
-    """Evaluate normalized parameters: for each item a path, a dictionary, or a `Parameter`.
+    """Evaluate normalized parameters to a path, a dictionary or a `Parameter` for each item.
 
     Raises:
         LinkwrightError: LAUNCH132 or LAUNCH133, the errors in a value or a file.
@@ -85,10 +85,12 @@ def evaluate_parameters(context: LaunchContext, parameters: Iterable[Any]) -> tu
 
 
 def evaluate_parameter_dict(context: LaunchContext, parameters: NormalizedDict) -> dict[str, Any]:
-    """Evaluate a normalized dictionary: values by name, lists as tuples.
+    """Evaluate a normalized dictionary, and return the values by name.
+
+    Lists become tuples.
 
     Raises:
-        LinkwrightError: LAUNCH132, the errors in a value; also a TypeError.
+        LinkwrightError: LAUNCH132, the errors in a value; the error is a TypeError, too.
     """
     if not isinstance(parameters, Mapping):
         raise TypeError("expected dict")
@@ -101,7 +103,7 @@ def evaluate_parameter_dict(context: LaunchContext, parameters: NormalizedDict) 
     return evaluated
 
 
-# --- normalizing ------------------------------------------------------------------------------------------------
+# --- normalization ----------------------------------------------------------------------------------------------
 
 
 def _normalized_item(item: Any, place: Place | None) -> Any:
@@ -160,7 +162,7 @@ def _normalized_sequence(items: Sequence[Any], key: Any) -> tuple[Any, ...]:
         return tuple(items)
     if Substitution in kinds and kinds <= {str, Substitution}:
         return tuple(normalize_to_list_of_substitutions(items))
-    # Separate items: strings and other values are literal, substitutions are read as YAML one by one.
+    # The items are evaluated separately: strings and other values are literal, and each substitution is read as YAML.
     return tuple(
         tuple(normalize_to_list_of_substitutions(item))
         if isinstance(item, (Substitution, list, tuple))
@@ -183,7 +185,7 @@ def _item_kind(item: Any, key: Any) -> type:
     raise error_at(Place.of_caller(), "LAUNCH132", message, hint, ros_error=TypeError(message))
 
 
-# --- evaluating -------------------------------------------------------------------------------------------------
+# --- evaluation -------------------------------------------------------------------------------------------------
 
 
 def _evaluated_item(context: LaunchContext, item: Any) -> Any:

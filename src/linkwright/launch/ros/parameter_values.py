@@ -1,7 +1,7 @@
-"""Values of node parameters, which may contain substitutions (``launch_ros.parameter_descriptions``).
+"""Values of node parameters (``launch_ros.parameter_descriptions``).
 
-A substitution is text; ``value_type`` sets the type of the parameter, or YAML's rules if it is not given, as in
-launch_ros.
+They may contain substitutions. A substitution evaluates to text. As in launch_ros, ``value_type`` sets the type of the
+parameter, and YAML's rules determine it if ``value_type`` is not given.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ _ALLOWED = (
 
 
 class ParameterValue(Placed):
-    """A value with a type.
+    """A parameter value with a type.
 
     Args:
-        value: the value, or substitutions that give it as text.
+        value: the value, or substitutions that evaluate to it as text.
         value_type: bool, int, float, str, or a list of one of these such as ``List[int]``; None for YAML's rules.
 
     Raises:
@@ -60,23 +60,24 @@ class ParameterValue(Placed):
 
     @property
     def value(self) -> Any:
-        """The value as given, with substitutions as lists, or after evaluation the result."""
+        """The value as given, with substitutions as lists; after evaluation, the result."""
         return self._value if self._evaluated is None else self._evaluated
 
     @property
     def value_type(self) -> Any:
-        """The type of the value."""
+        """The type of the value, or None for YAML's rules."""
         return self._value_type
 
     def evaluate(self, context: LaunchContext, name: str | None = None) -> Any:
-        """Evaluate the value in its type.
+        """Evaluate the value, and return it in its type.
 
         Args:
             context: the context of the substitutions.
             name: the parameter's name, for messages.
 
         Raises:
-            LinkwrightError: LAUNCH132, the text is not such a value; also a ValueError or TypeError, as in launch_ros.
+            LinkwrightError: LAUNCH132, the text is not a value of the type; the error is a ValueError or TypeError,
+                too, as in launch_ros.
         """
         called = phrase("parameter '{name}'", name=name) if name else phrase("the value of a parameter")
         try:
@@ -103,10 +104,10 @@ class ParameterValue(Placed):
 
 
 class Parameter:
-    """A name and a value, for ``parameters`` of a node.
+    """A name and a value, for the ``parameters`` of a node.
 
     Args:
-        name: the name.
+        name: the name of the parameter.
         value: see `ParameterValue`.
         value_type: see `ParameterValue`.
     """
@@ -118,12 +119,12 @@ class Parameter:
 
     @property
     def place(self) -> Place | None:
-        """The location."""
+        """The location of the parameter in the launch file, or None."""
         return self._parameter_value.place
 
     @property
     def name(self) -> list[Substitution] | str:
-        """The name as substitutions, or after evaluation as text."""
+        """The name as substitutions; after evaluation, as text."""
         return self._name if self._rule is None else self._rule[0]
 
     @property
@@ -137,10 +138,10 @@ class Parameter:
         return self._parameter_value.value_type
 
     def evaluate(self, context: LaunchContext) -> tuple[str, Any]:
-        """Evaluate name and value.
+        """Evaluate the name and the value, and return them.
 
         Raises:
-            LinkwrightError: LAUNCH132, if the text is no such value.
+            LinkwrightError: LAUNCH132, the text is not a value of the type.
         """
         if self._rule is None:
             name = perform_substitutions(context, self._name)
@@ -149,17 +150,20 @@ class Parameter:
 
 
 def yaml_value(text: str, name: str, place: Place | None) -> Any:
-    """Read a text as YAML, as launch_ros does for parameters without a type; lists become tuples.
+    """Read a text as YAML, as launch_ros does for parameters without a type.
+
+    Lists become tuples.
 
     Raises:
-        LinkwrightError: LAUNCH132, it is not YAML, or its value is invalid for a parameter; also a TypeError, as in
-            launch_ros.
+        LinkwrightError: LAUNCH132, the text is not YAML, or its value is invalid for a parameter; the error is a
+            TypeError, too, as in launch_ros.
     """
     value = _loaded(text, name, place)
     if value is None:
         return ""
     if isinstance(value, str):
-        # YAML would fold lines. XML means the same either way, and unfolded lines keep its locations right.
+        # YAML would fold the lines of an XML text. Return it unfolded: it means the same, and locations in it stay
+        # correct.
         return text if text.lstrip().startswith("<") else value
     if isinstance(value, (*SCALARS, bytes)):
         return value
@@ -175,10 +179,13 @@ def yaml_value(text: str, name: str, place: Place | None) -> Any:
 
 
 def uniform(items: Sequence[Any], name: str, place: Place | None) -> tuple[Any, ...]:
-    """Return items of one type that is valid for lists of parameters.
+    """Return the items of a list parameter as a tuple, after checking their type.
+
+    All items must have one type that is valid for list parameters.
 
     Raises:
-        LinkwrightError: LAUNCH132, their types differ, or there are none; also a TypeError, as in launch_ros.
+        LinkwrightError: LAUNCH132, their types differ, or there are none; the error is a TypeError, too, as in
+            launch_ros.
     """
     kinds = {type(item) for item in items}
     if len(kinds) == 1 and kinds <= set(SCALARS):

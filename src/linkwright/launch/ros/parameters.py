@@ -1,4 +1,7 @@
-"""The parameters of one node from its scope, from files and its own, in order of precedence."""
+"""The parameters of a node.
+
+In order of precedence, they come from its scope, from files and from its own list.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,10 @@ ANY_NODE = "/**"
 
 @dataclass(frozen=True)
 class FileSource:
-    """A parameter file; `file` reads it, and `path` is for other processes."""
+    """A parameter file.
+
+    `file` is for reading it in this process, and `path` is for other processes.
+    """
 
     file: ParameterFile
     path: Path
@@ -47,7 +53,9 @@ class NodeParameters:
     sources: list[FileSource | dict[str, Any] | tuple[str, Any]] = field(default_factory=list)
 
     def without_missing_files(self, context: LaunchContext, place: Place | None) -> NodeParameters:
-        """Return the parameters without missing files, which launch_ros ignores too; each is reported.
+        """Return the parameters without missing files, and report each missing file.
+
+        launch_ros ignores them, too.
 
         Args:
             context: the context of the launch, for the warnings (LAUNCH133).
@@ -88,11 +96,11 @@ class NodeParameters:
             _warn(context, "LAUNCH149", message, hint, place)
 
     def values(self, context: LaunchContext, node: str) -> dict[str, Any]:
-        """Return the values by name, for a node of this process.
+        """Return the parameter values by name, for a node in this process.
 
         Args:
             context: the context in which the files were evaluated.
-            node: the node's full name, by which files are read.
+            node: the node's full name, which selects the values in files.
 
         Raises:
             LinkwrightError: LAUNCH133 and GRAPH212, the errors in a file.
@@ -108,7 +116,7 @@ class NodeParameters:
         return {name: list(value) if isinstance(value, tuple) else value for name, value in found.items()}
 
     def rules(self, context: LaunchContext) -> ParameterRules:
-        """Return the rules of the files, including those for other nodes of the process.
+        """Return the rules in the files, including the rules for other nodes of the process.
 
         Args:
             context: the context in which the files were evaluated.
@@ -123,7 +131,9 @@ class NodeParameters:
         return found
 
     def arguments(self, node: str | None, folder: Path | None) -> list[tuple[str, bool]]:
-        """Return the arguments for another process, each a file's path (True) or a rule ``name:=value`` (False).
+        """Return command-line arguments for another process.
+
+        They are file paths (True) or rules ``name:=value`` (False).
 
         Args:
             node: the node's full name; None if it is not known.
@@ -147,7 +157,10 @@ def _warn(context: LaunchContext, code: str, message: Phrase, hint: Phrase | Non
 
 
 def scope_parameters(given: Iterable[Any], context: LaunchContext) -> NodeParameters:
-    """Return the parameters of a node's scope, from `SetParameter` and `SetParametersFromFile`."""
+    """Return the parameters of a node's scope.
+
+    `SetParameter` and `SetParametersFromFile` set them.
+    """
     found = NodeParameters()
     for item in given:
         if isinstance(item, tuple):
@@ -159,7 +172,7 @@ def scope_parameters(given: Iterable[Any], context: LaunchContext) -> NodeParame
 
 
 def own_parameters(normalized: Sequence[Any], context: LaunchContext) -> NodeParameters:
-    """Evaluate a node's own parameters, the result of `normalize_parameters`.
+    """Evaluate a node's own parameters, which `normalize_parameters` has normalized.
 
     Raises:
         LinkwrightError: LAUNCH132 or LAUNCH133, the errors in a value or a file.
@@ -177,7 +190,7 @@ def own_parameters(normalized: Sequence[Any], context: LaunchContext) -> NodePar
 
 
 def rule(name: str, value: Any) -> str:
-    """Return a parameter for the command line: ``name:=value``, with the value in YAML."""
+    """Format a parameter for the command line as ``name:=value``, with the value in YAML."""
     import yaml
 
     value = list(value) if isinstance(value, tuple) else value
@@ -186,7 +199,10 @@ def rule(name: str, value: Any) -> str:
 
 
 def write_file(parameters: dict[str, Any], node: str | None, folder: Path | None) -> str:
-    """Write a new file with values for a node, or for any node if its name is not known, and return its path."""
+    """Write parameter values to a new file, and return its path.
+
+    The values are for a node, or for any node if its name is not known.
+    """
     import tempfile
 
     import yaml
@@ -194,6 +210,6 @@ def write_file(parameters: dict[str, Any], node: str | None, folder: Path | None
     plain = {str(name): str(value) if isinstance(value, str) else value for name, value in parameters.items()}
     descriptor, path = tempfile.mkstemp(prefix="launch_params_", suffix=".yaml", dir=folder)
     with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-        # Tuples stay tuples, as in launch_ros; readers of parameter files ignore the tags.
+        # Tuples are tagged as tuples, as in launch_ros; readers of parameter files ignore the tags.
         yaml.dump({node or ANY_NODE: {"ros__parameters": plain}}, file, default_flow_style=False)
     return path

@@ -1,4 +1,4 @@
-"""Reading the tags of nodes in XML and YAML launch files."""
+"""Parsing of the tags of nodes in XML and YAML launch files."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ Entities = list[Entity]
 
 
 def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any) -> dict[str, Any]:
-    """Add the keyword arguments of a node to those of a process.
+    """Add the keyword arguments of a node to the keyword arguments of a process.
 
     Args:
         entity: the tag.
-        parser: makes substitutions.
+        parser: parses the substitutions in the tag.
         kwargs: the keyword arguments read so far.
         cls: the action's class, which reads command lines and parameters.
     """
@@ -29,7 +29,7 @@ def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any)
         words = entity.get_attr(attribute, optional=True)
         if words is not None:
             kwargs[keyword] = cls._parse_cmdline(words, parser)
-    kwargs.pop("name", None)  # the process's name, read from the same attribute
+    kwargs.pop("name", None)  # this is the process's name, read from the same attribute
     kwargs.update(parse_texts(entity, parser, name="name", exec_name="exec_name", package="pkg", namespace="namespace"))
     kwargs["executable"] = parser.parse_substitution(entity.get_attr("exec"))
     kwargs.update(parse_remappings(entity, parser))
@@ -40,7 +40,10 @@ def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any)
 
 
 def parse_remappings(entity: Entity, parser: Parser) -> dict[str, Any]:
-    """Return the keyword argument ``remappings`` of the ``remap`` tags inside, if there are any."""
+    """Return the keyword argument ``remappings`` for the ``remap`` tags inside.
+
+    The result is empty if there are none.
+    """
     tags = entity.get_attr("remap", data_type=Entities, optional=True)
     if tags is None:
         return {}
@@ -53,7 +56,7 @@ def parse_remappings(entity: Entity, parser: Parser) -> dict[str, Any]:
 
 
 def parse_parameters(tags: list[Entity], parser: Parser) -> list[Any]:
-    """Return the parameters in ``param`` tags, as ``parameters`` of a node.
+    """Return the parameters in ``param`` tags in the form of a node's ``parameters``.
 
     Raises:
         RuntimeError: LAUNCH118, a tag has conflicting or missing attributes.
@@ -107,7 +110,10 @@ def _nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
 
 
 def _not_of_type(tag: Entity, value: Any, identifier: str | None, error: Exception) -> Exception:
-    """Return the error about the value of a ``param`` tag; an error with a location stays as it is."""
+    """Return the error for the value of a ``param`` tag.
+
+    An error that has a location is returned unchanged.
+    """
     if isinstance(error, LinkwrightError) and error.diagnostics[0].code != "LAUNCH132":
         return error
     name, value = tag.get_attr("name"), repr(value)

@@ -1,6 +1,6 @@
-"""Substitutions of ``nav2_common.launch`` that rewrite and query parameter files.
+"""The substitutions of ``nav2_common.launch`` that rewrite and query parameter files.
 
-They are part of the Navigation2 project; launch files of many robots use them.
+They are part of the Navigation2 project, but launch files of many robots use them.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _PARAMETERS = "ros__parameters"
 
 
 class _OfFile(Substitution):
-    """The base of substitutions on a YAML file."""
+    """The base class of substitutions on a YAML file."""
 
     def __init__(self, source_file: SomeSubstitutionsType) -> None:
         self._source_file = normalize_to_list_of_substitutions(source_file)
@@ -40,7 +40,7 @@ class _OfFile(Substitution):
         return self._source_file
 
     def describe(self) -> str:
-        """The file."""
+        """Return a text with the path of the file."""
         return f"{type(self).__name__}({describe(self._source_file)})"
 
     def _read(self, context: LaunchContext) -> tuple[Path, str]:
@@ -74,16 +74,17 @@ class _OfFile(Substitution):
 
 
 class RewrittenYaml(_OfFile):
-    """The path of a new parameter file: a copy with replaced values.
+    """The path of a new parameter file, which is a copy with replaced values.
 
     Args:
-        source_file: the file.
-        param_rewrites: name -> value for each parameter of that name, or path with dots -> value for one of them; a
+        source_file: the file to copy.
+        param_rewrites: name -> value for all parameters with that name, or path with dots -> value for one parameter; a
             path with ``ros__parameters`` in it is added if the file has no such parameter.
-        root_key: a root key to nest all of it under.
+        root_key: a root key under which the entire content is nested.
         key_rewrites: name -> new name of keys.
         value_rewrites: text -> new text of values.
-        convert_types: whether values that look like numbers become numbers; ``true`` and ``false`` always count.
+        convert_types: whether values that look like numbers become numbers; ``true`` and ``false`` are always
+            converted.
     """
 
     def __init__(
@@ -103,7 +104,7 @@ class RewrittenYaml(_OfFile):
         self._convert_types = convert_types
 
     def perform(self, context: LaunchContext) -> str:
-        """The path of the new file.
+        """Write the new file, and return its path.
 
         Raises:
             LinkwrightError: LAUNCH152, the file cannot be read.
@@ -148,7 +149,7 @@ def _leaves(content: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...
 
 
 def _with_values(content: Any, values: Mapping[str, Any], path: tuple[str, ...]) -> Any:
-    """Return the content with values replaced by key or by full path."""
+    """Return the content with values replaced, which are given by key or by full path."""
     if isinstance(content, list):
         return [_with_values(item, values, (*path, str(number))) for number, item in enumerate(content)]
     if isinstance(content, dict):
@@ -183,12 +184,12 @@ def _add(content: Any, path: list[str], value: Any) -> None:
 
 
 class ReplaceString(_OfFile):
-    """The path of a new file: a copy with replaced texts.
+    """The path of a new file, which is a copy with replaced texts.
 
     Args:
-        source_file: the file.
+        source_file: the file to copy.
         replacements: text -> replacement.
-        condition: if it does not hold, the result is the path of the file itself.
+        condition: a condition; if it does not hold, the result is the path of the file itself.
     """
 
     def __init__(
@@ -203,11 +204,11 @@ class ReplaceString(_OfFile):
 
     @property
     def condition(self) -> Condition | None:
-        """The condition."""
+        """The condition under which texts are replaced, or None."""
         return self._condition
 
     def perform(self, context: LaunchContext) -> str:
-        """The path.
+        """Write the new file if the condition holds, and return the path of the result.
 
         Raises:
             LinkwrightError: LAUNCH152, the file cannot be read.
@@ -228,7 +229,7 @@ class HasNodeParams(_OfFile):
         self._node_name = node_name
 
     def perform(self, context: LaunchContext) -> str:
-        """``True`` or ``False``.
+        """Return ``True`` if the file has parameters for the node, else ``False``.
 
         Raises:
             LinkwrightError: LAUNCH152, the file cannot be read.
@@ -238,7 +239,7 @@ class HasNodeParams(_OfFile):
 
 
 class LaunchConfigAsBool(Substitution):
-    """A launch configuration as ``True`` or ``False``; also ``on`` and ``yes`` count as true."""
+    """A launch configuration as ``True`` or ``False``; ``on`` and ``yes`` count as true, too."""
 
     def __init__(self, name: str) -> None:
         from linkwright.launch.model.substitutions import LaunchConfiguration
@@ -246,19 +247,19 @@ class LaunchConfigAsBool(Substitution):
         self._configuration = LaunchConfiguration(name)
 
     def describe(self) -> str:
-        """The configuration."""
+        """Return a text with the name of the launch configuration."""
         return f"LaunchConfigAsBool({self._configuration.describe()})"
 
     def perform(self, context: LaunchContext) -> str:
-        """``True`` or ``False``."""
+        """Return ``True`` or ``False``."""
         return str(self._configuration.perform(context).strip().lower() in _TRUE)
 
 
 class ParseMultiRobotPose(Substitution):
-    """Robots and their poses, written as ``robot1={x: 1.0, yaw: 0.5}; robot2={...}``.
+    """The poses of robots, written as ``robot1={x: 1.0, yaw: 0.5}; robot2={...}``.
 
     Args:
-        robots_argument: a substitution for the text, or the name of a launch argument that `value` reads from the
+        robots_argument: a substitution for the text, or the name of a launch argument, which `value` reads from the
             command line.
     """
 
@@ -266,17 +267,17 @@ class ParseMultiRobotPose(Substitution):
         self._argument = robots_argument
 
     def describe(self) -> str:
-        """The argument."""
+        """Return a text with the argument."""
         words = self._argument if isinstance(self._argument, str) else self._argument.describe()
         return f"ParseMultiRobotPose({words})"
 
     def value(self) -> dict[str, dict[str, float]]:
-        """Return name -> pose of the robots in the argument on the command line."""
+        """Return name -> pose of the robots, from the launch argument on the command line."""
         start = f"{self._argument}:="
         return self._parsed(next((word[len(start) :] for word in sys.argv if word.startswith(start)), ""))
 
     def perform(self, context: LaunchContext) -> Any:
-        """Return name -> pose of the robots (not a text, unlike other substitutions)."""
+        """Return name -> pose of the robots, unlike other substitutions, which return a text."""
         if isinstance(self._argument, str):
             return self._parsed(str(context.launch_configurations.get(self._argument, "")))
         return self._parsed(self._argument.perform(context))
@@ -317,7 +318,7 @@ def _performed(context: LaunchContext, rewrites: Mapping[str, list[Substitution]
 
 
 def _write_file(context: LaunchContext, text: str, suffix: str) -> str:
-    """Return the path of a new file, which is deleted after a running launch."""
+    """Write a new file, which is deleted after a running launch, and return its path."""
     folder = context.session.scratch_folder if context.is_running else None
     with tempfile.NamedTemporaryFile("w", suffix=suffix, dir=folder, delete=False, encoding="utf-8") as file:
         file.write(text)

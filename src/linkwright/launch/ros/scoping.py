@@ -1,6 +1,6 @@
-"""Actions that apply to all later nodes in the scope: namespace, parameters, remappings.
+"""Actions that apply to all later nodes in the scope: namespaces, parameters and remappings.
 
-They are kept in launch configurations, as in launch_ros, so that groups end them.
+As in launch_ros, they are stored in launch configurations, so that they end with a group.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ Parsed = tuple[type[Action], dict[str, Any]]
 @expose_action("push_ros_namespace")
 @expose_action("push-ros-namespace")
 class PushRosNamespace(Action):
-    """Prefixes the namespaces of all later nodes."""
+    """Adds a prefix to the namespaces of all later nodes."""
 
     def __init__(self, namespace: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -59,7 +59,7 @@ class PushRosNamespace(Action):
         """Push the namespace.
 
         Raises:
-            LinkwrightError: LAUNCH134, it is not a valid namespace.
+            LinkwrightError: LAUNCH134, the namespace is not valid.
         """
         inner = perform_substitutions(context, self._namespace)
         outer = context.launch_configurations.get(NAMESPACE)
@@ -83,7 +83,7 @@ class SetParameter(Action):
         _, kwargs = super().parse(entity, parser)
         kwargs["name"] = parser.parse_substitution(entity.get_attr("name"))
         value = entity.get_attr("value", data_type=None)
-        # A string is read by YAML's rules, even if it is quoted in a YAML file.
+        # A string is converted by YAML's rules, even if it is quoted in a YAML file.
         kwargs["value"] = parser.parse_substitution(entity.get_attr("value")) if isinstance(value, str) else value
         return cls, kwargs
 
@@ -98,7 +98,7 @@ class SetParameter(Action):
         return next(iter(self._parameters.values()))
 
     def execute(self, context: LaunchContext) -> None:
-        """Set it.
+        """Set the parameter.
 
         Raises:
             LinkwrightError: LAUNCH132, the errors in the value.
@@ -109,7 +109,7 @@ class SetParameter(Action):
 
 @expose_action("set_parameters_from_file")
 class SetParametersFromFile(Action):
-    """Sets the parameters of a file for all later nodes that it names."""
+    """Sets the parameters in a file for all later nodes that the file names."""
 
     def __init__(self, filename: Path | SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -128,7 +128,7 @@ class SetParametersFromFile(Action):
         return self._filename
 
     def execute(self, context: LaunchContext) -> None:
-        """Set them."""
+        """Set the parameters."""
         _append(context, PARAMETERS, perform_substitutions(context, self._filename))
 
 
@@ -151,16 +151,16 @@ class SetRemap(Action):
 
     @property
     def src(self) -> list[Substitution]:
-        """The name that is replaced, as substitutions."""
+        """The name to replace, as substitutions."""
         return self._source
 
     @property
     def dst(self) -> list[Substitution]:
-        """The name that replaces it, as substitutions."""
+        """The replacement name, as substitutions."""
         return self._destination
 
     def execute(self, context: LaunchContext) -> None:
-        """Add it."""
+        """Add the remapping."""
         rule = perform_substitutions(context, self._source), perform_substitutions(context, self._destination)
         _append(context, REMAPPINGS, rule)
 
@@ -180,7 +180,7 @@ class SetUseSimTime(SetParameter):
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> None:
-        """Set it, for the launcher's own timers too.
+        """Set ``use_sim_time``, also for the launcher's own timers.
 
         Raises:
             LinkwrightError: LAUNCH132, the value is neither true nor false.
@@ -196,7 +196,7 @@ class SetUseSimTime(SetParameter):
 
 @expose_action("set_ros_log_dir")
 class SetROSLogDir(Action):
-    """Changes the log folder of processes started from here on.
+    """Changes the log folder of processes that are started later.
 
     Args:
         new_log_dir: the folder; a relative one is inside the previous folder.
@@ -219,10 +219,10 @@ class SetROSLogDir(Action):
         return self._log_dir
 
     def execute(self, context: LaunchContext) -> None:
-        """Change it.
+        """Change the log folder.
 
         Raises:
-            LinkwrightError: LAUNCH136, the previous folder is also relative.
+            LinkwrightError: LAUNCH136, the previous folder is relative, too.
         """
         folder = Path(log_base(context.environment), perform_substitutions(context, self._log_dir))
         if not folder.is_absolute():
@@ -234,5 +234,5 @@ class SetROSLogDir(Action):
 
 
 def _append(context: LaunchContext, name: str, item: Any) -> None:
-    # A new list, so that a scope's copy of the old one stays unchanged.
+    # Create a new list, so that the list that an outer scope has saved stays unchanged.
     context.launch_configurations[name] = [*context.launch_configurations.get(name, ()), item]

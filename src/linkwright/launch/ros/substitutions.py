@@ -1,4 +1,4 @@
-"""Substitutions for the folders of packages and for parameters of the scope."""
+"""Substitutions for the folders of packages and for the parameters of the scope."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class _OfLaunchRos(DeclaredSubstitution):
-    """The base of the substitutions of ``launch_ros``."""
+    """The base class of the substitutions of ``launch_ros``."""
 
     @classmethod
     def wrong_count(cls, expected: str, given: int) -> Exception:
@@ -36,19 +36,22 @@ class _OfLaunchRos(DeclaredSubstitution):
 
 
 class FindPackage(_OfLaunchRos, shown="{kind}(pkg={package})"):
-    """The base of substitutions for a folder of a package; ``/`` appends a path."""
+    """The base class of substitutions for a folder of a package.
+
+    The operator ``/`` appends a path.
+    """
 
     package: Texts = Texts()
 
     def find(self, package_name: str) -> str:
-        """The folder of a package."""
+        """Return the folder of a package."""
         raise NotImplementedError
 
     def __truediv__(self, other: SomeSubstitutionsType) -> PathJoinSubstitution:
         return PathJoinSubstitution([self, other])
 
     def perform(self, context: LaunchContext) -> str:
-        """The path.
+        """Return the path of the folder.
 
         Raises:
             PackageNotFoundError: PKG101, there is no such package.
@@ -60,7 +63,7 @@ class FindPackagePrefix(FindPackage, tag="find-pkg-prefix"):
     """The install prefix of a package."""
 
     def find(self, package_name: str) -> str:
-        """The prefix."""
+        """Return the install prefix."""
         return str(install_prefix(current_finder().share(package_name)))
 
 
@@ -68,7 +71,7 @@ class FindPackageShare(FindPackage, tag="find-pkg-share"):
     """The share folder of a package."""
 
     def find(self, package_name: str) -> str:
-        """The folder."""
+        """Return the share folder."""
         return str(current_finder().share(package_name))
 
 
@@ -79,11 +82,11 @@ class ExecutableInPackage(_OfLaunchRos, tag="exec-in-pkg", shown="ExecInPkg(pkg=
     package: Texts = Texts()
 
     def perform(self, context: LaunchContext) -> str:
-        """The path.
+        """Return the path of the executable.
 
         Raises:
-            LinkwrightError: LAUNCH131, there is no such package or executable; also a SubstitutionFailure or similar
-                class, as in launch_ros.
+            LinkwrightError: LAUNCH131, there is no such package or executable; the error is a SubstitutionFailure or of
+                a similar class, too, as in launch_ros.
         """
         package = perform_substitutions(context, self.package)
         executable = perform_substitutions(context, self.executable)
@@ -100,7 +103,7 @@ class ParameterSubstitution(_OfLaunchRos, tag="param", shown="Parameter(name={na
     default: AnyOptionalTexts = AnyOptionalTexts(default=None, kw_only=True, read=default_texts)
 
     def perform(self, context: LaunchContext) -> str:
-        """The value, as text.
+        """Return the value as text.
 
         Raises:
             SubstitutionFailure: LAUNCH137, no such parameter was set, and there is no default.

@@ -1,4 +1,4 @@
-"""Actions after a period of ROS time, which may be simulated."""
+"""The action that visits actions after a period of ROS time, which may be simulated."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 class RosTimer(TimerAction):
     """Visits actions once, after a period of ROS time.
 
-    The time is that of the launcher's node, which uses ``/clock`` once `SetUseSimTime` sets it, even after the timer.
+    The timer uses the time of the launcher's node. This node uses ``/clock`` once `SetUseSimTime` has been visited,
+    even if that happens after the timer starts.
     """
 
     def _schedule(self, context: LaunchContext) -> Schedule:
@@ -31,7 +32,7 @@ class RosTimer(TimerAction):
 
 
 class _OneShot:
-    """A timer of a node that fires once."""
+    """A node's timer that fires once."""
 
     def __init__(self, node: Node, seconds: float, due: Callable[[], None]) -> None:
         self._node = node

@@ -1,1 +1,1 @@
-"""Modules of ROS that are made of launches, for programs that import them: see `linkwright.standins`."""
+"""Stand-ins for ROS modules that build on launches; see `linkwright.standins`."""

@@ -1,4 +1,4 @@
-"""The types of parameters and remappings that ``launch_ros`` has names for."""
+"""The types of parameters and remappings that have names in ``launch_ros``."""
 
 from __future__ import annotations
 

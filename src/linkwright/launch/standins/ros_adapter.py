@@ -17,8 +17,8 @@ class ROSAdapter:
     """An rclpy node with an executor that spins in a thread.
 
     Args:
-        argv: the arguments of rclpy's context.
-        autostart: whether it is started at once.
+        argv: the arguments of the rclpy context.
+        autostart: whether the node is started immediately.
     """
 
     def __init__(self, *, argv: Sequence[str] | None = None, autostart: bool = True) -> None:
@@ -32,10 +32,10 @@ class ROSAdapter:
             self.start()
 
     def start(self) -> None:
-        """Create the node and spin.
+        """Create the node, and spin it in a thread.
 
         Raises:
-            RuntimeError: it is already running.
+            RuntimeError: the node is already running.
         """
         if self._running:
             raise RuntimeError("Cannot start a ROS adapter that is already running")
@@ -52,10 +52,10 @@ class ROSAdapter:
         self._thread.start()
 
     def shutdown(self) -> None:
-        """Stop spinning and destroy the node.
+        """Stop spinning, and destroy the node.
 
         Raises:
-            RuntimeError: it is not running.
+            RuntimeError: the node is not running.
         """
         if not self._running:
             raise RuntimeError("Cannot shutdown a ROS adapter that is not running")
@@ -72,12 +72,12 @@ class ROSAdapter:
 
     @property
     def argv(self) -> Sequence[str] | None:
-        """The arguments of rclpy's context."""
+        """The arguments of the rclpy context."""
         return self._argv
 
     @property
     def ros_context(self) -> Any:
-        """Rclpy's context."""
+        """The rclpy context of the node."""
         return self._context
 
     @property

@@ -1,4 +1,7 @@
-"""The actions and tags of ``ros_gz_sim`` and ``ros_gz_bridge``: a simulation, spawned models, and bridges."""
+"""The actions and tags of ``ros_gz_sim`` and ``ros_gz_bridge``.
+
+They start a simulation, spawn models, and bridge topics.
+"""
 
 from __future__ import annotations
 
@@ -25,10 +28,10 @@ _CONTAINER = {"container_name": "ros_gz_container", "create_own_container": "Fal
 
 
 class _OneNode(Action, ABC):
-    """The base of actions that start a node from texts.
+    """The base class of actions that start one node, which text options describe.
 
     Args:
-        kwargs: the texts of `TEXTS`, and those of every action.
+        kwargs: the options that `TEXTS` names, and the arguments of every action.
     """
 
     TEXTS: ClassVar[Mapping[str, str]] = {}
@@ -44,7 +47,7 @@ class _OneNode(Action, ABC):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the tag, whose attributes are the texts."""
+        """Read the tag, whose attributes are the text options."""
         _, kwargs = super().parse(entity, parser)
         for name in cls.TEXTS:
             text = entity.get_attr(name, data_type=str, optional=True)
@@ -53,7 +56,7 @@ class _OneNode(Action, ABC):
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> list[Any]:
-        """Return the node, to visit next."""
+        """Return the node to visit next."""
         texts = {name: perform_substitutions(context, text) for name, text in self._texts.items()}
         node = self._node(texts)
         node.place = self.place
@@ -61,7 +64,7 @@ class _OneNode(Action, ABC):
 
     @abstractmethod
     def _node(self, texts: Mapping[str, str]) -> Node:
-        """The node that the texts describe."""
+        """Return the node that the text options describe."""
 
 
 def _text(value: Any) -> Any:
@@ -70,7 +73,7 @@ def _text(value: Any) -> Any:
 
 @expose_action("gz_server")
 class GzServer(_OneNode):
-    """The simulation without a window.
+    """Starts the simulation without a window.
 
     Args:
         kwargs: ``world_sdf_file`` or ``world_sdf_string``; options for containers have no effect.
@@ -85,7 +88,7 @@ class GzServer(_OneNode):
 
 @expose_action("gz_spawn_model")
 class GzSpawnModel(_OneNode):
-    """A model to spawn in the world.
+    """Spawns a model in the world.
 
     Args:
         kwargs: ``world``, one of ``file``, ``model_string`` and ``topic``, ``entity_name``, ``allow_renaming``, and the
@@ -108,12 +111,12 @@ class GzSpawnModel(_OneNode):
 
 @expose_action("ros_gz_bridge")
 class RosGzBridge(_OneNode):
-    """A bridge between topics.
+    """Starts a bridge between topics of the simulation and of ROS.
 
     Args:
-        bridge_name: the node's name.
+        bridge_name: the name of the node.
         config_file: the path of a YAML file with the topics to bridge.
-        extra_bridge_params: further parameters, as those of a `Node`.
+        extra_bridge_params: further parameters, as for a `Node`.
         kwargs: ``namespace`` and ``log_level``; options for containers and respawning have no effect.
     """
 
@@ -140,7 +143,7 @@ class RosGzBridge(_OneNode):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the tag, and ``param`` inside."""
+        """Read the tag and the ``param`` tags inside."""
         _, kwargs = super().parse(entity, parser)
         tags = entity.get_attr("param", data_type=Entities, optional=True)
         if tags:

@@ -26,10 +26,10 @@ _TRUTHS = ("true", "false", "True", "False", "TRUE", "FALSE")
 
 
 def _listed_choices(entity: Entity) -> list[str] | None:
-    """Return the list ``choices`` of YAML.
+    """Return the list ``choices`` of a YAML tag, or None.
 
     Raises:
-        TypeError: LAUNCH118, it is not a list of strings.
+        TypeError: LAUNCH118, the value is not a list of strings.
     """
     try:
         listed: list[str] | None = entity.get_attr("choices", data_type=list[str], optional=True)
@@ -42,7 +42,9 @@ def _listed_choices(entity: Entity) -> list[str] | None:
 
 @expose_action("arg")
 class DeclareLaunchArgument(Action):
-    """Declares an argument and sets the launch configuration with its name to the given or default value.
+    """Declares an argument.
+
+    The launch configuration with its name is set to the given or default value.
 
     Args:
         name: the argument's name.
@@ -84,7 +86,10 @@ class DeclareLaunchArgument(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read ``name``, ``default``, ``description`` and the ``choice`` inside, or the list ``choices`` of YAML."""
+        """Read ``name``, ``default``, ``description`` and the choices of the tag.
+
+        The choices are ``choice`` tags inside, or the list ``choices`` in YAML.
+        """
         _, kwargs = super().parse(entity, parser)
         kwargs["name"] = parser.escape_characters(entity.get_attr("name"))
         kwargs.update(parse_texts(entity, parser, default_value="default"))
@@ -109,7 +114,7 @@ class DeclareLaunchArgument(Action):
 
     @property
     def default_value(self) -> list[Substitution] | None:
-        """The default as substitutions, None for a required argument."""
+        """The default as substitutions; None for a required argument."""
         return self._default
 
     @property
@@ -124,21 +129,21 @@ class DeclareLaunchArgument(Action):
 
     @property
     def choices(self) -> list[str] | None:
-        """The allowed values, or None for any."""
+        """The allowed values, or None if any value is allowed."""
         return self._choices
 
     @property
     def _conditionally_included(self) -> bool:
-        """ROS's name for `conditionally_included`."""
+        """The flag `conditionally_included`, under its private name in ROS."""
         return self.conditionally_included
 
     def describe(self) -> str:
-        """Return its name, default and description."""
+        """Return a text with the argument's name, default and description."""
         default = "" if self._default is None else f", default_value={describe(self._default)}"
         return f"{type(self).__name__}('{self._name}'{default}, description='{self.description}')"
 
     def execute(self, context: LaunchContext) -> None:
-        """Set the launch configuration if it is not set, and check its value.
+        """Set the launch configuration to the default if it is not set, and check its value.
 
         Raises:
             RuntimeError: LAUNCH112, the value is not one of the choices; LAUNCH114, a required argument is missing.
@@ -193,7 +198,7 @@ class DeclareBooleanLaunchArgument(DeclareLaunchArgument):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the same as ``arg``, without choices."""
+        """Read the attributes of ``arg``, except its choices."""
         _, kwargs = super().parse(entity, parser)
         if "choices" in kwargs:
             raise ValueError("Cannot specify choices for bool_arg")

@@ -1,4 +1,4 @@
-"""Actions on launch configurations."""
+"""Actions that change launch configurations."""
 
 from __future__ import annotations
 
@@ -25,32 +25,35 @@ class SetLaunchConfiguration(AssigningAction):
     """Sets a launch configuration."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Set it."""
+        """Set the launch configuration."""
         context.launch_configurations[self.resolved_name(context)] = self.resolved_value(context)
 
 
 @expose_action("unset")
 class UnsetLaunchConfiguration(NamedAction):
-    """Unsets a launch configuration; one that is not set stays so."""
+    """Unsets a launch configuration; has no effect if it is not set."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Unset it."""
+        """Unset the launch configuration."""
         context.launch_configurations.pop(self.resolved_name(context), None)
 
 
 class PushLaunchConfigurations(Action):
-    """Opens a scope: what is set from here on is reset by `PopLaunchConfigurations`."""
+    """Opens a scope of launch configurations.
+
+    `PopLaunchConfigurations` undoes the changes made in it.
+    """
 
     def execute(self, context: LaunchContext) -> None:
-        """Open it."""
+        """Open the scope."""
         context.push_launch_configurations()
 
 
 class PopLaunchConfigurations(Action):
-    """Closes a scope and restores the launch configurations."""
+    """Closes a scope, and restores the launch configurations from before it."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Close it."""
+        """Close the scope."""
         context.pop_launch_configurations()
 
 
@@ -59,7 +62,8 @@ class ResetLaunchConfigurations(Action):
     """Removes all launch configurations except the given ones.
 
     Args:
-        launch_configurations: name -> value to set afterwards, evaluated before the others are removed.
+        launch_configurations: name -> value to set afterwards; evaluated before the existing configurations are
+            removed.
     """
 
     def __init__(self, launch_configurations: Mapping[Any, Any] | None = None, **kwargs: Any) -> None:
@@ -68,7 +72,7 @@ class ResetLaunchConfigurations(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the ``keep`` inside."""
+        """Read the ``keep`` tags inside."""
         _, kwargs = super().parse(entity, parser)
         kept = parse_pairs(entity, parser, "keep")
         if kept is not None:
@@ -76,7 +80,7 @@ class ResetLaunchConfigurations(Action):
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> None:
-        """Remove the other configurations."""
+        """Replace the launch configurations by the given ones."""
         kept = perform_pairs(context, self._kept)
         context.launch_configurations.clear()
         context.launch_configurations.update(kept)

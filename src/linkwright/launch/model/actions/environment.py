@@ -1,4 +1,4 @@
-"""Actions on environment variables."""
+"""Actions that change environment variables."""
 
 from __future__ import annotations
 
@@ -34,27 +34,27 @@ class SetEnvironmentVariable(AssigningAction):
     """Sets an environment variable."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Set it."""
+        """Set the environment variable."""
         context.environment[self.resolved_name(context)] = self.resolved_value(context)
 
 
 @expose_action("unset_env")
 class UnsetEnvironmentVariable(NamedAction):
-    """Unsets an environment variable; one that is not set stays so."""
+    """Unsets an environment variable; has no effect if it is not set."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Unset it."""
+        """Unset the environment variable."""
         context.environment.pop(self.resolved_name(context), None)
 
 
 @expose_action("append_env")
 class AppendEnvironmentVariable(AssigningAction):
-    """Adds a value to an environment variable that is a list, such as a search path.
+    """Adds a value to an environment variable that holds a list, such as a search path.
 
     Args:
-        name: the variable.
-        value: what is added.
-        prepend: whether to insert it before the existing value.
+        name: the name of the variable.
+        value: the value to add.
+        prepend: whether to insert the value before the existing ones.
         separator: the separator; the system's path separator by default.
     """
 
@@ -72,7 +72,7 @@ class AppendEnvironmentVariable(AssigningAction):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Also reads ``prepend`` and ``separator``."""
+        """Read ``prepend`` and ``separator`` in addition to ``name`` and ``value``."""
         _, kwargs = super().parse(entity, parser)
         prepend = entity.get_attr("prepend", optional=True, data_type=bool, can_be_str=True)
         if prepend is not None:
@@ -81,7 +81,7 @@ class AppendEnvironmentVariable(AssigningAction):
 
     @property
     def prepend(self) -> Any:
-        """Whether it is inserted before the existing value: a boolean or substitutions."""
+        """Whether to insert the value before the existing ones: a boolean or substitutions."""
         return self._prepend
 
     @property
@@ -90,7 +90,7 @@ class AppendEnvironmentVariable(AssigningAction):
         return self._separator
 
     def execute(self, context: LaunchContext) -> None:
-        """Add it."""
+        """Add the value to the environment variable."""
         name, value = self.resolved_name(context), self.resolved_value(context)
         parts = [context.environment[name]] if name in context.environment else []
         parts.insert(0 if perform_typed_substitution(context, self._prepend, bool) else len(parts), value)
@@ -102,7 +102,7 @@ class ReplaceEnvironmentVariables(Action):
     """Replaces the environment by the given variables.
 
     Args:
-        environment: name -> value.
+        environment: name -> value of the variables.
     """
 
     def __init__(self, environment: Mapping[Any, Any] | None = None, **kwargs: Any) -> None:
@@ -111,7 +111,7 @@ class ReplaceEnvironmentVariables(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the ``env`` inside."""
+        """Read the ``env`` tags inside."""
         _, kwargs = super().parse(entity, parser)
         environment = parse_pairs(entity, parser, "env")
         if environment is not None:
@@ -120,36 +120,36 @@ class ReplaceEnvironmentVariables(Action):
 
     @property
     def environment(self) -> Mapping[Any, Any]:
-        """The variables, as they were given."""
+        """The variables, as given."""
         return self._environment
 
     def execute(self, context: LaunchContext) -> None:
-        """Replace it."""
+        """Replace the environment."""
         context.reset_environment(perform_pairs(context, normalize_pairs(self._environment)))
 
 
 @expose_action("push_env")
 class PushEnvironment(Action):
-    """Opens a scope: what is set from here on is reset by `PopEnvironment`."""
+    """Opens a scope of environment variables; `PopEnvironment` undoes the changes made in it."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Open it."""
+        """Open the scope."""
         context.push_environment()
 
 
 @expose_action("pop_env")
 class PopEnvironment(Action):
-    """Closes a scope and restores the environment."""
+    """Closes a scope, and restores the environment from before it."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Close it."""
+        """Close the scope."""
         context.pop_environment()
 
 
 @expose_action("reset_env")
 class ResetEnvironment(Action):
-    """Restores the environment from the start of the launch."""
+    """Restores the environment to its state at the start of the launch."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Restore it."""
+        """Restore the environment."""
         context.reset_environment()

@@ -1,4 +1,4 @@
-"""Actions on events."""
+"""Actions that emit events, and actions that register and unregister event handlers."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class _HandlerAction(Action):
-    """The base of actions on an event handler."""
+    """The base class of actions on an event handler."""
 
     def __init__(self, event_handler: BaseEventHandler, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -33,7 +33,7 @@ class _HandlerAction(Action):
 
     @property
     def event_handler(self) -> BaseEventHandler:
-        """The handler."""
+        """The event handler."""
         return self._event_handler
 
 
@@ -41,20 +41,20 @@ class RegisterEventHandler(_HandlerAction):
     """Registers an event handler."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Register it."""
+        """Register the event handler."""
         context.register_event_handler(self._event_handler)
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return the entities that the handler visits, as far as known."""
+        """Return the entities that the handler visits, as far as they are known."""
         known = self.get_sub_entities()
         return [(f"{self._event_handler} handles an event", known)] if known else []
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return nothing: the handler visits its entities only on an event."""
+        """Return an empty list, because the handler visits its entities only on an event."""
         return []
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return the entities that the handler visits, as far as known."""
+        """Return the entities that the handler visits, as far as they are known."""
         return self._event_handler.describe()[1]
 
 
@@ -62,12 +62,12 @@ class UnregisterEventHandler(_HandlerAction):
     """Unregisters an event handler."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Unregister it."""
+        """Unregister the event handler."""
         context.unregister_event_handler(self._event_handler)
 
 
 class EmitEvent(Action):
-    """Emits an event into the queue of the launch."""
+    """Adds an event to the queue of the launch."""
 
     def __init__(self, *, event: events.Event, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -77,21 +77,24 @@ class EmitEvent(Action):
 
     @property
     def event(self) -> events.Event:
-        """The event."""
+        """The event to emit."""
         return self._event
 
     def describe(self) -> str:
-        """The event."""
+        """Return a text that names the event."""
         return f"{type(self).__name__}(event='{self._event.name}')"
 
     def execute(self, context: LaunchContext) -> None:
-        """Emit it."""
+        """Emit the event."""
         context.emit_event_sync(self._event)
 
 
 @expose_action("shutdown")
 class Shutdown(EmitEvent):
-    """Shuts the launch down. As ``on_exit`` of a process, the reason that is logged names the process."""
+    """Shuts the launch down.
+
+    Used as ``on_exit`` of a process, it also logs the name of the process.
+    """
 
     def __init__(self, *, reason: SomeSubstitutionsType = "reason not given", **kwargs: Any) -> None:
         self._reason: list[Substitution] = normalize_to_list_of_substitutions(reason)
@@ -108,7 +111,7 @@ class Shutdown(EmitEvent):
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> None:
-        """End it."""
+        """Emit the event that ends the launch."""
         cause = context.get_locals_as_dict().get("event")
         if isinstance(cause, events.ProcessExited):
             context.log("launch", 20, f"process[{cause.process_name}] was required: shutting down launched system")

@@ -1,4 +1,7 @@
-"""The program of a process: command, environment, folder and name (``launch.descriptions.Executable``)."""
+"""The program of a process (``launch.descriptions.Executable``).
+
+It has a command, environment, folder and name.
+"""
 
 from __future__ import annotations
 
@@ -26,12 +29,12 @@ class Executable:
 
     Args:
         cmd: program and arguments, each a string, a substitution, or a list of these to join.
-        prefix: a command to prefix it with, such as ``gdb -ex run --args``; by default the launch configuration
+        prefix: a command to put before the program, such as ``gdb -ex run --args``; by default the launch configuration
             ``launch-prefix``, if the program's name matches the pattern ``launch-prefix-filter``.
-        name: its name in the log, the program's by default; a number is appended.
-        cwd: the folder it runs in.
-        env: its entire environment; that of the launcher by default.
-        additional_env: additional variables.
+        name: the name in the log, to which a number is appended; the program's name by default.
+        cwd: the folder in which the program runs.
+        env: the entire environment; the launcher's by default.
+        additional_env: additional environment variables.
         arguments: further arguments.
 
     Attributes:
@@ -76,7 +79,7 @@ class Executable:
     apply_context = prepare
 
     def prefix_words(self, context: LaunchContext, command: list[str]) -> list[str]:
-        """Return the words of the prefix."""
+        """Return the words of the command prefix."""
         if self.prefix is not None:
             return shlex.split(perform_substitutions(context, self.prefix))
         wanted = context.launch_configurations.get("launch-prefix", "")
@@ -85,7 +88,7 @@ class Executable:
         return shlex.split(wanted) if wanted and applies else []
 
     def base_name(self, context: LaunchContext, command: list[str]) -> str:
-        """Return the name in the log, without its number."""
+        """Return the process's name in the log, without its number."""
         return Path(command[0]).name if self.name is None else perform_substitutions(context, self.name)
 
     def environment(self, context: LaunchContext) -> dict[str, str]:

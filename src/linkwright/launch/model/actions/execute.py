@@ -38,32 +38,32 @@ _DEFAULT_TIMEOUT = "5"
 
 
 class ExecuteLocal(Action):
-    """Starts a process and follows it to its end.
+    """Starts a process and monitors it until it ends.
 
     Args:
         process_description: the program to run.
-        shell: whether a shell runs it.
-        sigterm_timeout: seconds between SIGINT and SIGTERM when it is to end; by default the launch configuration
-            of this name, else 5.
+        shell: whether a shell runs the command.
+        sigterm_timeout: seconds between SIGINT and SIGTERM when the process is to end; by default the launch
+            configuration of this name, else 5.
         sigkill_timeout: seconds between SIGTERM and SIGKILL; by default the launch configuration of this name, else 5.
-        emulate_tty: whether it gets a pseudo-terminal; the launch configuration of this name takes precedence.
-        output: the destination of its output: ``screen``, ``log``, ``both``, ``own_log``, ``full``, or a mapping of
+        emulate_tty: whether the process gets a pseudo-terminal; the launch configuration of this name takes precedence.
+        output: the destination of the output: ``screen``, ``log``, ``both``, ``own_log``, ``full``, or a mapping of
             ``stdout``, ``stderr`` and ``both`` to sets of ``screen``, ``log`` and ``own_log``. The environment variable
             ``OVERRIDE_LAUNCH_PROCESS_OUTPUT`` takes precedence.
         output_format: the format of a line, which may contain ``{line}`` and ``{this}`` (the action).
         cached_output: whether `get_stdout` and `get_stderr` return the output.
         log_cmd: whether the command is shown before it runs.
-        on_exit: the entities to visit when it has ended, or a function of event and context that returns them.
-        respawn: whether it is restarted if it ends before the launch.
+        on_exit: the entities to visit when the process has ended, or a function of event and context that returns them.
+        respawn: whether the process is restarted if it ends before the launch.
         respawn_delay: seconds to wait before a restart.
         respawn_max_retries: the maximum number of restarts; unlimited if negative.
-        split_arguments: whether each word of the command is split as in a shell, for substitutions that give several
+        split_arguments: whether each word of the command is split as in a shell, for substitutions that produce several
             words.
         kwargs: see `Action`.
 
     Attributes:
-        process_details: ``name``, ``cmd``, ``cwd``, ``env`` and ``pid`` once it runs.
-        return_code: its exit status once it has ended.
+        process_details: ``name``, ``cmd``, ``cwd``, ``env`` and ``pid`` of the process once it is running.
+        return_code: the exit status of the process once it has ended.
     """
 
     def __init__(
@@ -113,17 +113,17 @@ class ExecuteLocal(Action):
 
     @property
     def process_description(self) -> Executable:
-        """The description of the process."""
+        """The program to run."""
         return self._description
 
     @property
     def shell(self) -> bool:
-        """Whether a shell runs it."""
+        """Whether a shell runs the command."""
         return self._shell
 
     @property
     def emulate_tty(self) -> Any:
-        """Whether it gets a pseudo-terminal, as given."""
+        """Whether the process gets a pseudo-terminal, as given."""
         return self._emulate_tty
 
     @property
@@ -138,23 +138,23 @@ class ExecuteLocal(Action):
 
     @property
     def output(self) -> Any:
-        """The destination of its output: a mapping or substitutions."""
+        """The destination of the output: a mapping or substitutions."""
         return self._output
 
     def get_stdout(self) -> str:
-        """Return its output to stdout; needs ``cached_output``."""
+        """Return the output of the process to stdout; requires ``cached_output``."""
         return self._cached_text(1)
 
     def get_stderr(self) -> str:
-        """Return its output to stderr; needs ``cached_output``."""
+        """Return the output of the process to stderr; requires ``cached_output``."""
         return self._cached_text(2)
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """Return the entities to visit when it has ended."""
+        """Return the entities to visit when the process has ended."""
         return self._on_exit
 
     def describe(self) -> str:
-        """Return its command, folder and environment, and whether a shell runs it."""
+        """Return a text with the command, folder, environment and use of a shell."""
         about = self._description
         command = ", ".join(describe(part) for part in about.cmd)
         folder = None if about.cwd is None else describe(about.cwd)
@@ -162,18 +162,21 @@ class ExecuteLocal(Action):
         environment = None if pairs is None else "{" + ", ".join(pairs) + "}"
         return f"{type(self).__name__}(cmd=[{command}], cwd={folder}, env={environment}, shell={self._shell})"
 
-    # --- the run --------------------------------------------------------------------------------------------
+    # --- execution ------------------------------------------------------------------------------------------
 
     def prepare(self, context: LaunchContext) -> None:
-        """Evaluate the name, command, folder and environment, for users that read them before it runs."""
+        """Evaluate the name, command, folder and environment.
+
+        Users may read them before the process runs.
+        """
         self._description.prepare(context, self)
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
         """Start the process.
 
         Raises:
-            RuntimeError: LAUNCH141, it was started before.
-            LinkwrightError: LAUNCH141, an invalid option of the process.
+            RuntimeError: LAUNCH141, the process was started before.
+            LinkwrightError: LAUNCH141, an option of the process is invalid.
         """
         if not context.is_shutdown:
             self._start(context, [perform_substitutions(context, part) for part in self._description.cmd])
@@ -187,12 +190,12 @@ class ExecuteLocal(Action):
         return as_entities(self._after_exit(event, context))
 
     def wrote(self, stream: int, text: bytes) -> None:
-        """Store output of the process to stdout (1) or stderr (2)."""
+        """Store output that the process wrote to stdout (1) or stderr (2)."""
         if self._cached is not None:
             self._cached[stream].append(text)
 
     def _start(self, context: LaunchContext, command: list[str]) -> str:
-        """Start the process of a command, and return its name in the log."""
+        """Start a process with a command, and return its name in the log."""
         if self._started:
             text = f"ExecuteLocal action '{self._description.final_name}': executed more than once: {self.describe()}"
             message = phrase(
@@ -293,7 +296,7 @@ class ExecuteLocal(Action):
 
 @expose_action("executable")
 class ExecuteProcess(ExecuteLocal):
-    """Starts a process and follows it to its end.
+    """Starts a process from a command and monitors it until it ends.
 
     Args:
         cmd: program and arguments, see `Executable`.
@@ -327,7 +330,7 @@ class ExecuteProcess(ExecuteLocal):
 
         Args:
             entity: the tag.
-            parser: for the substitutions in it.
+            parser: parses the substitutions in the tag.
             ignore: names of arguments to skip.
         """
         from linkwright.launch.model.actions.process_tag import parse_process
@@ -338,18 +341,18 @@ class ExecuteProcess(ExecuteLocal):
 
     @classmethod
     def _parse_cmdline(cls, cmd: str, parser: Parser) -> list[list[Substitution]]:
-        """Return the words of a command line; the name is ROS's."""
+        """Return the words of a command line; the method has its name in ROS."""
         from linkwright.launch.model.markup.command_line import parse_command_line
 
         return parse_command_line(cmd, parser)
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
-        """Start the process, or the node of ours that replaces a program that is not installed.
+        """Start the process, or the Linkwright node that replaces a program that is not installed.
 
         Raises:
-            RuntimeError: LAUNCH141, it was started before.
-            LinkwrightError: LAUNCH141, an invalid option of the process; NODE002, the package with the node that
-                replaces it cannot be imported.
+            RuntimeError: LAUNCH141, the process was started before.
+            LinkwrightError: LAUNCH141, an option of the process is invalid; NODE002, the package with the node that
+                replaces the program cannot be imported.
         """
         if not context.is_shutdown:
             command = [perform_substitutions(context, part) for part in self._description.cmd]
@@ -358,7 +361,10 @@ class ExecuteProcess(ExecuteLocal):
         return None
 
     def _is_replaced(self, context: LaunchContext, command: list[str]) -> bool:
-        """Start the node that replaces the command, if there is one, and return whether there is."""
+        """Start the node that replaces the command, if there is one.
+
+        Return whether it was started.
+        """
         from linkwright.launch.model.replaced_programs import replacing_node
 
         try:
@@ -392,17 +398,20 @@ class ExecuteProcess(ExecuteLocal):
 
     @property
     def name(self) -> Any:
-        """The process's name in the log, such as ``talker-1``; as substitutions before it runs."""
+        """The process's name in the log, such as ``talker-1``.
+
+        It is given as substitutions until it is evaluated.
+        """
         return self._description.final_name or self._description.name
 
     @property
     def cwd(self) -> Any:
-        """The folder it runs in; as substitutions before it runs."""
+        """The folder in which the process runs; substitutions until the folder is evaluated."""
         return self._description.final_cwd or self._description.cwd
 
     @property
     def env(self) -> Any:
-        """The environment; as substitutions before it runs."""
+        """The environment of the process; substitutions until the environment is evaluated."""
         return self._description.final_env or self._description.env
 
     @property

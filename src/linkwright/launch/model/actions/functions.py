@@ -12,12 +12,12 @@ from linkwright.launch.model.context import LaunchContext
 
 
 class OpaqueFunction(Action):
-    """Calls a function with the launch context when it is visited, and visits the entities that it returns.
+    """Calls a function with the launch context, and visits the entities that it returns.
 
     Args:
         function: called as ``function(context, *args, **kwargs)``.
-        args: further arguments.
-        kwargs: further named arguments.
+        args: further positional arguments.
+        kwargs: further keyword arguments.
     """
 
     def __init__(
@@ -36,23 +36,23 @@ class OpaqueFunction(Action):
         self._kwargs = dict(kwargs or {})
 
     def describe(self) -> str:
-        """The function's name."""
+        """Return a text with the function's name."""
         name = getattr(self._function, "__qualname__", None) or type(self._function).__name__
         return f"{type(self).__name__}(function={name.rpartition('<locals>.')[2]})"
 
     def execute(self, context: LaunchContext) -> Any:
-        """Call it."""
+        """Call the function, and return the entities to visit next."""
         return self._function(context, *self._args, **self._kwargs)
 
 
 class OpaqueCoroutine(Action):
-    """Starts a coroutine when it is visited; the launch waits for it to finish, and a shutdown cancels it.
+    """Starts a coroutine; the launch waits for it to finish, and a shutdown cancels it.
 
     Args:
         coroutine: called as ``coroutine(context, *args, **kwargs)``.
-        args: further arguments.
-        kwargs: further named arguments.
-        ignore_context: whether it is called without the context.
+        args: further positional arguments.
+        kwargs: further keyword arguments.
+        ignore_context: whether the coroutine function is called without the context.
     """
 
     def __init__(
@@ -92,5 +92,5 @@ class OpaqueCoroutine(Action):
             task.cancel()
 
     def get_asyncio_future(self) -> asyncio.Future[Any] | None:
-        """Return the coroutine's task, once it is started."""
+        """Return the coroutine's task, or None before it is started."""
         return self._task

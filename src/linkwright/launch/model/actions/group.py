@@ -26,13 +26,13 @@ _KEEP = "keep"
 
 @expose_action("group")
 class GroupAction(Action):
-    """Actions that are visited together.
+    """A group of actions that are visited together.
 
     Args:
-        actions: the actions.
-        scoped: whether launch configurations and environment variables set inside end with the group.
-        forwarding: whether a scoped group sees those from outside.
-        launch_configurations: name -> value to set in the group.
+        actions: the actions of the group.
+        scoped: whether changes to launch configurations and environment variables inside end with the group.
+        forwarding: whether a scoped group sees the launch configurations and environment variables from outside.
+        launch_configurations: name -> value of configurations to set in the group.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class GroupAction(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read ``scoped``, ``forwarding``, the ``keep`` and the actions inside."""
+        """Read ``scoped``, ``forwarding``, and the ``keep`` tags and actions inside."""
         _, kwargs = super().parse(entity, parser)
         for name in ("scoped", "forwarding"):
             value = entity.get_attr(name, data_type=bool, optional=True, can_be_str=False)
@@ -66,8 +66,8 @@ class GroupAction(Action):
         return cls, kwargs
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return the actions of the group, with those that open and close its scope."""
-        # Users' classes set '_GroupAction__actions', its name in ROS, in their 'execute'.
+        """Return the actions of the group, with the actions that open and close its scope."""
+        # Users' classes set the attribute '_GroupAction__actions', its name in ROS, in 'execute', so check for changes.
         if self.__following is None or self.__following[0] is not self.__actions:
             self.__following = self.__actions, self._with_scope()
         return self.__following[1]
@@ -84,5 +84,5 @@ class GroupAction(Action):
         return [*opening, *setting, *self.__actions, PopEnvironment(), PopLaunchConfigurations()]
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """The actions, to be visited next."""
+        """Return the actions to visit next."""
         return self.get_sub_entities()

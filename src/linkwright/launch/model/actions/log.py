@@ -38,7 +38,7 @@ LEVELS = {
 
 @expose_action("log")
 class Log(Action):
-    """Writes a line at a log level.
+    """Writes a line to the log at a level.
 
     Args:
         msg: the line.
@@ -68,7 +68,7 @@ class Log(Action):
                     warnings.warn(problem, stacklevel=2)
                 else:
                     warnings.warn_explicit(problem, UserWarning, place.file, place.span().line)
-                return LogInfo, kwargs  # the tag's level in Jazzy and before
+                return LogInfo, kwargs  # Jazzy and earlier log such a tag at this level
             level = "INFO"
         kwargs["level"] = parser.parse_substitution(level)
         return cls, kwargs
@@ -88,11 +88,11 @@ class Log(Action):
         return next((part.place for part in self._level if part.place is not None), self.place)
 
     def describe(self) -> str:
-        """The line."""
+        """Return a text with the line to log."""
         return f"{type(self).__name__}({describe(self._msg)})"
 
     def execute(self, context: LaunchContext) -> None:
-        """Write it.
+        """Write the line.
 
         Raises:
             KeyError: LAUNCH150, there is no such level.
@@ -114,7 +114,7 @@ def _number(level: str, place: Place | None) -> int:
 
 
 class _LogOfLevel(Log):
-    """Writes a line at one log level."""
+    """The base class of actions that write a line at a fixed log level."""
 
     _LEVEL = "INFO"
 
@@ -125,12 +125,12 @@ class _LogOfLevel(Log):
 
 @expose_action("log_info")
 class LogInfo(_LogOfLevel):
-    """Writes a line."""
+    """Writes an informational line."""
 
 
 @expose_action("log_debug")
 class LogDebug(_LogOfLevel):
-    """Writes a line that is shown with ``--debug``."""
+    """Writes a debug line, which is shown with ``--debug``."""
 
     _LEVEL = "DEBUG"
 

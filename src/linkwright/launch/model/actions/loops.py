@@ -28,11 +28,13 @@ if TYPE_CHECKING:
 
 @expose_action("for_each")
 class ForEach(Action):
-    """Calls a function for each of several sets of values, and visits what it returns.
+    """Calls a function for each of several sets of values.
+
+    The entities that it returns are visited.
 
     Args:
         input_values: the sets, each a YAML mapping in braces, separated by semicolons.
-        function: called with the values of a set by name; returns entities.
+        function: called with the values of a set as keyword arguments; returns entities.
     """
 
     SEPARATOR = ";"
@@ -58,15 +60,15 @@ class ForEach(Action):
 
     @property
     def function(self) -> Callable[..., Any]:
-        """The function."""
+        """The function to call for each set."""
         return self._function
 
     def describe(self) -> str:
-        """Values and function."""
+        """Return a text with the values and the function's name."""
         return f"{type(self).__name__}(input_values={describe(self._input_values)}, function={_name(self._function)})"
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
-        """Return the entities for all sets, to visit next.
+        """Return the entities for all sets, to be visited next.
 
         Raises:
             LinkwrightError: LAUNCH151, a set is not a mapping.
@@ -95,12 +97,12 @@ class ForEach(Action):
 
 @expose_action("for")
 class ForLoop(Action):
-    """Calls a function for each number from 0, and visits what it returns.
+    """Calls a function for each index from 0, and visits the entities that it returns.
 
     Args:
         length: the number of iterations.
-        function: called with the number as ``i``; returns entities.
-        name: the name for ``$(index NAME)``, which returns the number.
+        function: called with the index as ``i``; returns entities.
+        name: the name for ``$(index NAME)``, which returns the index.
     """
 
     def __init__(
@@ -128,21 +130,21 @@ class ForLoop(Action):
 
     @property
     def function(self) -> Callable[..., Any]:
-        """The function."""
+        """The function to call for each index."""
         return self._function
 
     @property
     def name(self) -> str | None:
-        """The name of the number."""
+        """The name of the index for ``$(index NAME)``."""
         return self._name
 
     def describe(self) -> str:
-        """Length, name and function."""
+        """Return a text with the length, the name and the function's name."""
         length, function = describe(self._length), _name(self._function)
         return f"{type(self).__name__}(length={length}, name='{self._name}', function={function})"
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
-        """Return a `ForEach` over the numbers, to visit next.
+        """Return a `ForEach` over the indices, to be visited next.
 
         Raises:
             ValueError: LAUNCH151, the length is not an integer.
@@ -162,7 +164,10 @@ def _name(function: Callable[..., Any]) -> str:
 
 
 def iteration(children: Sequence[LaunchDescriptionEntity], values: Mapping[str, Any]) -> list[LaunchDescriptionEntity]:
-    """Return the actions of one iteration, in which ``$(for-var NAME)`` and ``$(index NAME)`` return its values."""
+    """Return the actions of an iteration of a loop.
+
+    In them, ``$(for-var NAME)`` and ``$(index NAME)`` give the values of the iteration.
+    """
 
     def begin(context: LaunchContext) -> None:
         context.push_locals()
@@ -173,7 +178,7 @@ def iteration(children: Sequence[LaunchDescriptionEntity], values: Mapping[str, 
     def leave(context: LaunchContext) -> None:
         context.pop_locals()
 
-    # Three functions, as in ROS, whose users count the entities of a loop. The children are copies, because an action
-    # such as a node keeps its state.
+    # There are three functions, as in ROS, because users count the entities of a loop. The children are copied, because
+    # an action such as a node keeps its state.
     around = [OpaqueFunction(function=step) for step in (begin, enter, leave)]
     return [*around[:2], *deepcopy(list(children)), around[2]]

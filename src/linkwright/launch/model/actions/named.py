@@ -1,4 +1,7 @@
-"""The base of actions on launch configurations and environment variables: a name and an optional value."""
+"""The base classes of actions on launch configurations and environment variables.
+
+Such an action has a name and an optional value.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,7 @@ Pairs = list[tuple[list[Substitution], list[Substitution]]]
 
 
 class NamedAction(Action):
-    """An action on a launch configuration or environment variable, given by its name."""
+    """An action on a launch configuration or environment variable with a given name."""
 
     def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -44,11 +47,11 @@ class NamedAction(Action):
         return self._name
 
     def describe(self) -> str:
-        """The name."""
+        """Return a text with the name."""
         return f"{type(self).__name__}({describe(self._name)})"
 
     def resolved_name(self, context: LaunchContext) -> str:
-        """The name."""
+        """Return the evaluated name."""
         return perform_substitutions(context, self._name)
 
 
@@ -72,16 +75,16 @@ class AssigningAction(NamedAction):
         return self._value
 
     def describe(self) -> str:
-        """Name and value."""
+        """Return a text with the name and the value."""
         return f"{type(self).__name__}({describe(self._name)}, {describe(self._value)})"
 
     def resolved_value(self, context: LaunchContext) -> str:
-        """The value."""
+        """Return the evaluated value."""
         return perform_substitutions(context, self._value)
 
 
 def parse_pairs(entity: Entity, parser: Parser, tag: str) -> dict[Any, Any] | None:
-    """Return the names and values of the child entities with a tag, such as ``<env name= value=/>``."""
+    """Return the names and values in child tags such as ``<env name= value=/>``."""
     inside = entity.get_attr(tag, data_type=list[Entity], optional=True)
     if inside is None:
         return None
@@ -95,7 +98,7 @@ def parse_pairs(entity: Entity, parser: Parser, tag: str) -> dict[Any, Any] | No
 
 
 def normalize_pairs(values: Any) -> Pairs:
-    """Return a mapping, or pairs, of names and values in one form."""
+    """Convert a mapping, or pairs of names and values, to pairs of substitutions."""
     pairs: Iterable[Any] = values.items() if hasattr(values, "items") else values
     return [
         (normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(value)) for name, value in pairs
@@ -103,5 +106,5 @@ def normalize_pairs(values: Any) -> Pairs:
 
 
 def perform_pairs(context: LaunchContext, pairs: Pairs) -> dict[str, str]:
-    """Evaluate names and values."""
+    """Evaluate pairs of names and values, and return them as a dictionary."""
     return {perform_substitutions(context, name): perform_substitutions(context, value) for name, value in pairs}

@@ -20,16 +20,16 @@ _SECONDS = ("sigkill_timeout", "sigterm_timeout")
 
 
 def parse_process(entity: Entity, parser: Parser, ignored: frozenset[str]) -> dict[str, Any]:
-    """Return the keyword arguments of an `ExecuteProcess`.
+    """Return the keyword arguments for an `ExecuteProcess` from its tag.
 
     Args:
         entity: the tag.
-        parser: for the substitutions in it.
+        parser: parses the substitutions in the tag.
         ignored: names of arguments to skip.
 
     Raises:
-        AttributeError: LAUNCH117, it has no ``cmd``.
-        TypeError: LAUNCH118, an attribute has another type.
+        AttributeError: LAUNCH117, the tag has no ``cmd``.
+        TypeError: LAUNCH118, an attribute has the wrong type.
         ValueError: LAUNCH118, a value is invalid.
     """
     kwargs: dict[str, Any] = {}
@@ -67,7 +67,10 @@ def parse_process(entity: Entity, parser: Parser, ignored: frozenset[str]) -> di
 
 
 def _as_text(argument: str) -> dict[str, Any]:
-    """Return how to read an argument: ``respawn`` in YAML may be a boolean, all others are text."""
+    """Return the type options to read an argument as text.
+
+    In YAML, ``respawn`` may also be a boolean.
+    """
     return {"data_type": bool, "can_be_str": True} if argument == "respawn" else {}
 
 

@@ -1,6 +1,6 @@
-"""Actions of ``launch_testing`` in launch files of tests.
+"""The actions of ``launch_testing``, for the launch files of tests.
 
-Such a launch file can be launched as any other. ``launch_test`` runs its tests; see
+Such a launch file can be launched like any other. ``launch_test`` runs its tests; see
 `linkwright.launch.standins.launch_testing_api`.
 """
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @expose_action("ready_to_test")
 class ReadyToTest(Action):
-    """Signals that tests may start; has no effect outside tests."""
+    """Signals that tests may start; has no effect outside of tests."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -36,13 +36,13 @@ class ReadyToTest(Action):
         self._callbacks.append(callback)
 
     def execute(self, context: LaunchContext) -> None:
-        """Emit the event."""
+        """Emit the event that signals readiness."""
         for callback in self._callbacks:
             callback()
 
 
 def ready_actions(entities: Iterable[LaunchDescriptionEntity]) -> Iterator[ReadyToTest]:
-    """Return the `ReadyToTest` actions in entities and their descendants."""
+    """Yield the `ReadyToTest` actions among entities and their descendants."""
     for entity in entities:
         if isinstance(entity, ReadyToTest):
             yield entity
@@ -55,12 +55,12 @@ class Test(ExecuteProcess):
     """A process that is a test.
 
     Args:
-        timeout: seconds after which it is ended.
-        kill_timeout: accepted for compatibility with ROS; without effect there, too.
+        timeout: seconds after which the test is ended.
+        kill_timeout: accepted for compatibility with ROS, where it has no effect, either.
         kwargs: see `ExecuteProcess`.
     """
 
-    __test__ = False  # pytest would collect it as tests
+    __test__ = False  # keeps pytest from collecting the class as a test
 
     def __init__(
         self,
@@ -79,7 +79,7 @@ class Test(ExecuteProcess):
         return self._timeout
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
-        """Start the test and its timeout."""
+        """Start the test and its timeout timer."""
         entities = list(super().execute(context) or ())
         if self._timeout is not None:
             end = EmitEvent(event=events.ShutdownProcess(process_matcher=events.matches_action(self)))
@@ -88,17 +88,17 @@ class Test(ExecuteProcess):
         return entities
 
     def exited(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """Stop the timeout, and return the entities to visit when the test has ended."""
+        """Cancel the timeout timer, and return the entities to visit when the test has ended."""
         if self._timer is not None:
             self._timer.cancel()
         return super().exited(event, context)
 
 
 class GTest(Test):
-    """A compiled test.
+    """A test that is a compiled program.
 
     Args:
-        path: the program.
+        path: the path of the program.
         kwargs: see `Test`.
     """
 
@@ -111,7 +111,7 @@ class PyTest(Test):
     """A test that pytest runs.
 
     Args:
-        path: the file.
+        path: the path of the test file.
         kwargs: see `Test`.
     """
 

@@ -1,4 +1,4 @@
-"""Actions that are delayed."""
+"""The action that delays other actions."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class TimerAction(Action):
     """Visits actions once, after a period.
 
     Args:
-        period: the seconds, as a number or substitutions.
+        period: the period in seconds, as a number or substitutions.
         actions: the actions to visit.
-        cancel_on_shutdown: whether a shutdown cancels it; otherwise the launch waits for it.
+        cancel_on_shutdown: whether a shutdown cancels the timer; otherwise the launch waits for it.
     """
 
     def __init__(
@@ -58,32 +58,32 @@ class TimerAction(Action):
 
     @property
     def period(self) -> Any:
-        """The seconds, or substitutions for them."""
+        """The period in seconds, as a number or substitutions."""
         return self._period
 
     @property
     def actions(self) -> list[LaunchDescriptionEntity]:
-        """The actions."""
+        """The actions to visit."""
         return self._actions
 
     def describe(self) -> str:
-        """The period."""
+        """Return a text with the period."""
         return f"{type(self).__name__}(period={self._period}, actions=<actions>)"
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return nothing: the actions are conditional on the timer."""
+        """Return an empty list, because the actions depend on the timer."""
         return []
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """The actions."""
+        """Return the actions, with a text about the timer."""
         return [(f"{self._period} seconds pass without being canceled", self._actions)]
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """The actions."""
+        """Return the actions to visit."""
         return self._actions
 
     def cancel(self) -> None:
-        """Cancel the timer, unless the period has passed."""
+        """Cancel the timer; has no effect once the period has passed."""
         self._canceled = True
         if self._cancel is not None:
             self._cancel()
@@ -108,12 +108,12 @@ class TimerAction(Action):
             )
 
     def _schedule(self, context: LaunchContext) -> Schedule | None:
-        """Return the scheduler; None for the launch's event loop."""
+        """Return the scheduler of the timer, or None to use the launch's event loop."""
         return None
 
 
 def _number(period: Any, timer: TimerAction) -> Any:
-    """Return the period as a number, if it is a literal."""
+    """Return the period as a number if it is a literal, else unchanged."""
     if isinstance(period, (bool, int)):
         return float(period)
     if isinstance(period, (list, tuple)) and all(isinstance(part, str) for part in period):

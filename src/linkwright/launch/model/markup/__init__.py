@@ -1,1 +1,1 @@
-"""Actions and substitutions in XML and YAML: registering them, reading their tags and values."""
+"""Registration of actions and substitutions in XML and YAML, and parsing of their tags."""

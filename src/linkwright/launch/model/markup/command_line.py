@@ -1,4 +1,4 @@
-"""Command lines of XML and YAML launch files, split into words with substitutions."""
+"""Command lines in XML and YAML launch files, split into words with substitutions."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ _ESCAPED_IN_DOUBLE_QUOTES = '"\\'
 def parse_command_line(text: str, parser: Any) -> list[list[Substitution]]:
     """Return the words of a command, each a list of substitutions to join.
 
-    Literal spaces, quotes and backslashes have their meaning in a shell; those from a substitution do not. A quote may
-    be opened before a substitution and closed after it.
+    Literal spaces, quotes and backslashes have the same meaning as in a shell; characters that a substitution produces
+    do not. A quote may be opened before a substitution and closed after it.
 
     Raises:
         ValueError: LAUNCH118, a quote is never closed.
@@ -41,7 +41,7 @@ def parse_command_line(text: str, parser: Any) -> list[list[Substitution]]:
 
 
 class _Words:
-    """Words that are built from characters and substitutions."""
+    """Builds words from characters and substitutions."""
 
     def __init__(self) -> None:
         self.words: list[list[Substitution]] = []
@@ -51,13 +51,13 @@ class _Words:
         self._began = False
 
     def insert(self, part: Substitution) -> None:
-        """Add a substitution to the word."""
+        """Add a substitution to the current word."""
         self._end_text()
         self._word.append(part)
         self._began = True
 
     def take(self, text: str) -> None:
-        """Add literal text."""
+        """Add literal text, which may end the current word and start others."""
         characters = iter(text)
         for character in characters:
             if self.quote == character:

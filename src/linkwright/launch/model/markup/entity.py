@@ -1,4 +1,7 @@
-"""The interfaces for functions that read tags: the entity (an XML tag or YAML mapping) and its file's parser."""
+"""The interfaces for functions that read tags.
+
+They are the entity (an XML tag or YAML mapping) and the file's parser.
+"""
 
 from __future__ import annotations
 
@@ -11,21 +14,21 @@ from linkwright.launch.model.substitution import Substitution
 
 
 class Entity:
-    """An XML tag or YAML mapping, as functions that read tags see it."""
+    """An XML tag or YAML mapping, as the functions that read tags see it."""
 
     @property
     def type_name(self) -> str:
-        """The tag."""
+        """The tag of the entity."""
         raise NotImplementedError
 
     @property
     def parent(self) -> Entity | None:
-        """The entity around it."""
+        """The enclosing entity, or None for the root."""
         raise NotImplementedError
 
     @property
     def children(self) -> list[Entity]:
-        """The entities inside."""
+        """The child entities."""
         raise NotImplementedError
 
     @property
@@ -34,10 +37,10 @@ class Entity:
         return None
 
     def assert_entity_completely_parsed(self) -> None:
-        """Check that all of its parts have been read.
+        """Check that all parts of the entity have been read.
 
         Raises:
-            ValueError: LAUNCH116, unread attributes or child entities.
+            ValueError: LAUNCH116, there are unread attributes or child entities.
         """
         raise NotImplementedError
 
@@ -45,22 +48,25 @@ class Entity:
         """Return an attribute, or the child entities with a name.
 
         Args:
-            name: the attribute.
-            data_type: the type of its value (see `linkwright.launch.model.markup.values`); None uses YAML's rules, and
-                a list of `Entity` requests the child entities with that name.
-            optional: whether to return None if it is missing.
-            can_be_str: whether to return a string that is not of the type, which may contain a substitution.
+            name: the name of the attribute.
+            data_type: the type of the value (see `linkwright.launch.model.markup.values`); None applies YAML's rules,
+                and a list of `Entity` requests the child entities with that name.
+            optional: whether to return None if the attribute is missing.
+            can_be_str: whether to return a string that is not of the type, because it may contain a substitution.
 
         Raises:
-            AttributeError: LAUNCH117, it is missing and not optional.
-            TypeError: LAUNCH118, it has another type.
-            ValueError: LAUNCH118, it has another type.
+            AttributeError: LAUNCH117, the attribute is missing and not optional.
+            TypeError: LAUNCH118, the attribute has another type.
+            ValueError: LAUNCH118, the attribute has another type.
         """
         raise NotImplementedError
 
 
 def is_list_of_entities(data_type: Any) -> bool:
-    """Return whether a type requests entities: ``List[Entity]`` or ``list[Entity]``, also of a subclass."""
+    """Return whether a type is a list of `Entity`.
+
+    It is ``List[Entity]`` or ``list[Entity]``, for `Entity` or a subclass of it.
+    """
     arguments = typing.get_args(data_type)
     return (
         typing.get_origin(data_type) is list
@@ -71,47 +77,50 @@ def is_list_of_entities(data_type: Any) -> bool:
 
 
 class PlacedText(str):
-    """A string of a launch file that records its location."""
+    """A string from a launch file that records its location."""
 
     __slots__ = ("place",)
 
     place: Place | None
 
     def __new__(cls, text: str, place: Place | None) -> PlacedText:  # noqa: PYI034 - Self needs Python 3.11
-        """Create the string with its place."""
+        """Create the string with its location."""
         made = super().__new__(cls, text)
         made.place = place
         return made
 
 
 def place_of(text: object) -> Place | None:
-    """Return the location of a string, if it has one."""
+    """Return the location of a string, or None if it has none."""
     return text.place if isinstance(text, PlacedText) else None
 
 
 class Parser(Protocol):
-    """Creates actions and substitutions from entities; `linkwright.launch.frontend.parser.Parser` is one."""
+    """The interface of objects that create actions and substitutions from entities.
+
+    `linkwright.launch.frontend.parser.Parser` implements it.
+    """
 
     def parse_action(self, entity: Entity) -> LaunchDescriptionEntity:
-        """The action of an entity."""
+        """Return the action that an entity describes."""
 
     def parse_substitution(self, value: str) -> list[Substitution]:
-        """A text with ``$(...)`` in it, as substitutions."""
+        """Parse a text that may contain ``$(...)`` into substitutions."""
 
     def parse_if_substitutions(self, value: Any) -> Any:
-        """A value with the substitutions in its texts."""
+        """Parse the substitutions in the strings of a value."""
 
     def escape_characters(self, value: str) -> str:
-        """The text with its escapes resolved."""
+        """Return the text with its backslash escapes resolved."""
 
 
 def parse_texts(entity: Entity, parser: Parser, **attributes: str) -> dict[str, list[Substitution]]:
-    """Return the keyword arguments with substitutions for the attributes that the tag has.
+    """Return keyword arguments with substitutions for attributes that the tag has.
 
     Args:
         entity: the tag.
-        parser: for the substitutions.
-        attributes: the attribute of each argument.
+        parser: parses the substitutions.
+        attributes: argument name -> attribute name.
     """
     given = {argument: entity.get_attr(attribute, optional=True) for argument, attribute in attributes.items()}
     return {argument: parser.parse_substitution(text) for argument, text in given.items() if text is not None}

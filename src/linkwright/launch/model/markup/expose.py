@@ -1,6 +1,6 @@
-"""The functions that create actions from tags and substitutions from ``$(name ...)``.
+"""The functions that create actions from tags, and substitutions from ``$(name ...)``.
 
-Packages register their own with the decorators, as in ``launch.frontend``.
+As in ``launch.frontend``, packages register their own functions with the decorators of this module.
 """
 
 from __future__ import annotations
@@ -24,20 +24,26 @@ arguments."""
 
 
 def expose_action(name: str) -> Callable[[T], T]:
-    """Register a class with a class method ``parse(entity, parser)``, or such a function, for the tag `name`."""
+    """Register a class or function for the tag `name`.
+
+    A class has a class method ``parse(entity, parser)``, and a function has the same parameters.
+    """
     return expose_impl(name, action_parse_methods, "action")
 
 
 def expose_substitution(name: str) -> Callable[[T], T]:
-    """Register a class with a class method ``parse(data)``, or such a function, for ``$(name ...)``."""
+    """Register a class or function for ``$(name ...)``.
+
+    A class has a class method ``parse(data)``, and a function has the same parameter.
+    """
     return expose_impl(name, substitution_parse_methods, "substitution")
 
 
 def expose_impl(name: str, parse_methods_map: dict[str, Any], exposed_type: str) -> Callable[[T], T]:
-    """Return the decorator that adds a class or function to a table.
+    """Return a decorator that adds the parse function of a class, or a function, to a table.
 
     Raises:
-        RuntimeError: by the decorator: the object has no parse method, or the name is taken.
+        RuntimeError: raised by the decorator if the object has no parse method, or the name is taken.
     """
 
     def decorate(exposed: T) -> T:
@@ -52,7 +58,10 @@ def expose_impl(name: str, parse_methods_map: dict[str, Any], exposed_type: str)
 
 
 def _is_same(one: Any, other: Any) -> bool:
-    """Return whether two functions are the same, or the same after a second import of their module."""
+    """Return whether two functions are the same.
+
+    A function from two imports of its module counts as the same.
+    """
     return bool(one == other) or (
         (one.__module__, one.__qualname__) == (other.__module__, other.__qualname__)
         and one.__code__.co_filename == other.__code__.co_filename
@@ -73,7 +82,7 @@ def _parse_method(exposed: Any, name: str, exposed_type: str) -> Any:
 
 
 def _reading_all(method: Any) -> Any:
-    """Return a function that calls a parse function and then checks that it has read the entire tag."""
+    """Wrap a parse function in a check that it has read the entire tag."""
 
     @functools.wraps(method)
     def parse(entity: Entity, parser: Parser) -> Any:

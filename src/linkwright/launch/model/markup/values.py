@@ -1,7 +1,7 @@
 """Typed values from text and substitutions (``launch.utilities.type_utils``).
 
-The types are ``int``, ``float``, ``bool``, ``str`` and uniform lists of these, written ``List[int]`` or ``list[int]``;
-None means the type that YAML's rules give.
+The types are ``int``, ``float``, ``bool``, ``str`` and uniform lists of these, written ``List[int]`` or ``list[int]``.
+None means the type that YAML's rules determine.
 """
 
 from __future__ import annotations
@@ -47,15 +47,15 @@ def is_typing_list(data_type: Any) -> bool:
 
 
 def is_valid_scalar_type(data_type: Any) -> bool:
-    """Return whether a type is one of the four scalar types."""
+    """Return whether a type is ``int``, ``float``, ``bool`` or ``str``."""
     return data_type in ScalarTypesTuple
 
 
 def extract_type(data_type: Any) -> tuple[Any, bool]:
-    """Return the scalar type, and whether the type is a list of it.
+    """Return the scalar type of a type, and whether the type is a list of it.
 
     Raises:
-        ValueError: for any other type.
+        ValueError: it is any other type.
     """
     is_list = is_typing_list(data_type) and bool(typing.get_args(data_type))
     scalar = typing.get_args(data_type)[0] if is_list else data_type
@@ -65,7 +65,10 @@ def extract_type(data_type: Any) -> tuple[Any, bool]:
 
 
 def is_instance_of_valid_type(value: Any, can_be_str: bool = False) -> bool:
-    """Return whether a value has one of the types; with `can_be_str`, lists may contain strings among other items."""
+    """Return whether a value has one of the allowed types.
+
+    With `can_be_str`, lists may contain strings among other items.
+    """
     if not isinstance(value, list):
         return isinstance(value, ScalarTypesTuple)
     kinds = {_scalar_type(item) for item in value}
@@ -79,10 +82,12 @@ def _scalar_type(value: Any) -> type | None:
 
 
 def is_instance_of(value: Any, data_type: Any = None, can_be_str: bool = False) -> bool:
-    """Return whether a value has a type; None accepts all types, `can_be_str` also strings.
+    """Return whether a value has a type.
+
+    None accepts all allowed types, and `can_be_str` additionally accepts strings.
 
     Raises:
-        ValueError: the type is none of those allowed.
+        ValueError: the type is not allowed.
     """
     if data_type is None:
         return is_instance_of_valid_type(value, can_be_str=can_be_str)
@@ -98,8 +103,9 @@ def coerce_to_type(value: str, data_type: Any = None, can_be_str: bool = False) 
 
     Args:
         value: the string.
-        data_type: the type; None uses YAML's rules.
-        can_be_str: whether to return a string that is not of the type unchanged (it may contain a substitution).
+        data_type: the type; None applies YAML's rules.
+        can_be_str: whether to return a string unchanged if it is not of the type, because it may contain a
+            substitution.
 
     Raises:
         TypeError: the value is not a string.
@@ -170,7 +176,7 @@ def get_typed_value(value: str | list[str], data_type: Any = None, can_be_str: b
     Raises:
         TypeError: a list is given for a type that is not a list, or the value is neither a string nor a list of
             strings.
-        ValueError: it is not of the type.
+        ValueError: the value is not of the type.
     """
     if not isinstance(value, list):
         return coerce_to_type(value, data_type, can_be_str=can_be_str)
@@ -181,11 +187,14 @@ def get_typed_value(value: str | list[str], data_type: Any = None, can_be_str: b
     return coerce_list(value, data_type, can_be_str=can_be_str)
 
 
-# --- values with substitutions in them ------------------------------------------------------------------------
+# --- values that contain substitutions ------------------------------------------------------------------------
 
 
 def is_substitution(value: Any) -> bool:
-    """Return whether a value is a substitution, or a list of strings with at least one substitution."""
+    """Return whether a value is a substitution, or a list with one.
+
+    The other items of the list must be strings.
+    """
     if isinstance(value, Substitution):
         return True
     if isinstance(value, str) or not isinstance(value, Iterable):
@@ -197,12 +206,12 @@ def is_substitution(value: Any) -> bool:
 
 
 def is_normalized_substitution(value: Any) -> bool:
-    """Return whether a value is a list of only substitutions."""
+    """Return whether a value is a list that contains only substitutions."""
     return isinstance(value, list) and bool(value) and all(isinstance(item, Substitution) for item in value)
 
 
 def read_boolean(value: Any) -> Any:
-    """Convert a string to a boolean; other values, such as substitutions, stay unchanged.
+    """Convert a string to a boolean, and return other values, such as substitutions, unchanged.
 
     Raises:
         ValueError: the string is not a boolean.
@@ -211,12 +220,12 @@ def read_boolean(value: Any) -> Any:
 
 
 def normalize_typed_substitution(value: Any, data_type: Any) -> Any:
-    """Normalize a value: substitutions become lists of substitutions, lists are normalized item by item.
+    """Convert the substitutions in a value to lists of substitutions, item by item in a list.
 
-    A list that can be one substitution is: ``['a', TextSubstitution(text='b')]`` means ``'ab'``.
+    A list that can be read as a single substitution is: ``['a', TextSubstitution(text='b')]`` means ``'ab'``.
 
     Raises:
-        TypeError: it can never be of the type.
+        TypeError: the value can never be of the type.
         ValueError: the type is not allowed.
     """
     if is_substitution(value):
@@ -238,10 +247,10 @@ def normalize_typed_substitution(value: Any, data_type: Any) -> Any:
 
 
 def perform_typed_substitution(context: Any, value: Any, data_type: Any = None) -> Any:
-    """Evaluate a result of `normalize_typed_substitution`.
+    """Evaluate the result of `normalize_typed_substitution`.
 
     Raises:
-        TypeError: a plain value is of another type.
+        TypeError: a plain value has another type.
         ValueError: the evaluated text is not of the type.
     """
     if is_normalized_substitution(value):
@@ -268,7 +277,7 @@ _TYPE_NAMES: dict[str, Any] = {
 
 
 def get_data_type_from_identifier(type_identifier: str) -> Any:
-    """Return the type of a name such as ``int``, ``list[int]`` or ``list_of_int``.
+    """Return the type with a name such as ``int``, ``list[int]`` or ``list_of_int``.
 
     Raises:
         ValueError: there is no such type.

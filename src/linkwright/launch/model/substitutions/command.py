@@ -1,4 +1,7 @@
-"""The substitution that runs a command; xacro is expanded in this process, to keep locations."""
+"""The substitution that runs a command.
+
+xacro runs in this process, so that errors have locations.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +37,7 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
     Args:
         command: program and arguments, as in a shell.
         on_stderr: the reaction to output on stderr: ``fail`` (the default), ``warn``, ``ignore`` or ``capture`` (append
-            it to stdout's).
+            it to stdout).
     """
 
     command: Texts = Texts()
@@ -46,7 +49,7 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
         return ValueError(*super().wrong_count(expected, given).args)
 
     def perform(self, context: LaunchContext) -> str:
-        """The output.
+        """Run the command, and return its output.
 
         Raises:
             DescriptionError: the command is xacro, and the model has errors.

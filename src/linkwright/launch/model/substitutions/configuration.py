@@ -1,4 +1,7 @@
-"""Substitutions that read the launch context: configurations, environment, the launch file itself."""
+"""Substitutions that read the launch context.
+
+They return configurations, the environment, and the launch file's own path.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +34,7 @@ _NOT_IN_NAMES = str.maketrans(".-:", "___")
 
 
 def default_texts(given: Any) -> list[Substitution]:
-    """Return a default, whose parts may also be numbers and booleans."""
+    """Convert a default, whose parts may also be numbers and booleans, to substitutions."""
     parts = given if isinstance(given, (list, tuple)) else [given]
     return normalize_to_list_of_substitutions([part if isinstance(part, Substitution) else str(part) for part in parts])
 
@@ -40,18 +43,18 @@ class LaunchConfiguration(DeclaredSubstitution, tag="var", shown="LaunchConfig({
     """The value of a launch configuration, such as a launch argument.
 
     Args:
-        variable_name: its name.
-        default: the text if it is not set; None makes that an error.
+        variable_name: the name of the launch configuration.
+        default: the text if the configuration is not set; with None, that is an error.
     """
 
     variable_name: Texts = Texts()
     default: AnyOptionalTexts = AnyOptionalTexts(default=None, kw_only=True, read=default_texts)
 
     def perform(self, context: LaunchContext) -> str:
-        """The value.
+        """Return the value.
 
         Raises:
-            SubstitutionFailure: LAUNCH121, it is not set and has no default.
+            SubstitutionFailure: LAUNCH121, the configuration is not set and there is no default.
         """
         name = perform_substitutions(context, self.variable_name)
         known = context.launch_configurations
@@ -76,18 +79,18 @@ class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})
     """The value of an environment variable.
 
     Args:
-        name: its name.
-        default_value: the text if it is not set; None makes that an error.
+        name: the name of the variable.
+        default_value: the text if the variable is not set; with None, that is an error.
     """
 
     name: Texts = Texts()
     default_value: OptionalTexts = OptionalTexts(default=None, kw_only=True)
 
     def perform(self, context: LaunchContext) -> str:
-        """The value.
+        """Return the value.
 
         Raises:
-            SubstitutionFailure: LAUNCH122, it is not set and has no default.
+            SubstitutionFailure: LAUNCH122, the variable is not set and there is no default.
         """
         name = perform_substitutions(context, self.name)
         if name in context.environment:
@@ -106,21 +109,24 @@ class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})
 
 
 class LocalSubstitution(Substitution):
-    """A local of the launch context, named by an expression such as ``event.reason``."""
+    """The value of a local of the launch context.
+
+    It is given by an expression such as ``event.reason``.
+    """
 
     def __init__(self, expression: str, description: str | None = None) -> None:
         self.expression = expression
         self.description = description
 
     def describe(self) -> str:
-        """The expression."""
+        """Return a text with the expression."""
         return f"LocalVar('{self.description or self.expression}')"
 
     def perform(self, context: LaunchContext) -> str:
-        """The value.
+        """Return the value as text.
 
         Raises:
-            SubstitutionFailure: LAUNCH123, there is no such local now.
+            SubstitutionFailure: LAUNCH123, there is no such local at this point.
         """
         known = context.get_locals_as_dict()
         first, *rest = self.expression.split(".")
@@ -147,10 +153,10 @@ class ThisLaunchFile(DeclaredSubstitution, tag="filename"):
     """The path of the launch file that is being visited."""
 
     def perform(self, context: LaunchContext) -> str:
-        """The path.
+        """Return the path.
 
         Raises:
-            SubstitutionFailure: LAUNCH123, if the description comes from no file.
+            SubstitutionFailure: LAUNCH123, the description was not read from a file.
         """
         path = context.get_locals_as_dict().get("current_launch_file_path")
         if path is None:
@@ -162,7 +168,7 @@ class ThisLaunchFile(DeclaredSubstitution, tag="filename"):
 
 
 class ThisLaunchFileDir(DeclaredSubstitution, tag="dirname"):
-    """The folder of the launch file that is being visited. With ``/`` it gives a path below it."""
+    """The folder of the launch file that is being visited; the operator ``/`` appends a path."""
 
     def __truediv__(self, other: SomeSubstitutionsType) -> Any:
         from linkwright.launch.model.substitutions.paths import PathJoinSubstitution
@@ -170,10 +176,10 @@ class ThisLaunchFileDir(DeclaredSubstitution, tag="dirname"):
         return PathJoinSubstitution([self, other])
 
     def perform(self, context: LaunchContext) -> str:
-        """The folder.
+        """Return the path of the folder.
 
         Raises:
-            SubstitutionFailure: LAUNCH123, if the description comes from no file.
+            SubstitutionFailure: LAUNCH123, the description was not read from a file.
         """
         folder = context.get_locals_as_dict().get("current_launch_file_directory")
         if folder is not None:
@@ -183,20 +189,20 @@ class ThisLaunchFileDir(DeclaredSubstitution, tag="dirname"):
 
 
 class LaunchLogDir(DeclaredSubstitution, tag="launch_log_dir/log_dir"):
-    """The folder that this launch writes its log into."""
+    """The folder in which this launch writes its log."""
 
     def perform(self, context: LaunchContext) -> str:
-        """The folder."""
+        """Return the path of the folder."""
         return str(context.log_folder)
 
 
 class AnonName(DeclaredSubstitution, tag=_ANONYMOUS):
-    """A name made unique by host name and numbers; the same one each time within a launch."""
+    """A name made unique by host name and numbers, which stays the same within a launch."""
 
     name: Texts = Texts()
 
     def perform(self, context: LaunchContext) -> str:
-        """The name with its numbers."""
+        """Return the unique name."""
         name = perform_substitutions(context, self.name)
         names: dict[str, str] = context.launch_configurations.setdefault(_ANONYMOUS, {})
         if name not in names:

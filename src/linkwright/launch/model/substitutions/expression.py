@@ -26,7 +26,8 @@ class PythonExpression(DeclaredSubstitution, tag="eval"):
 
     Args:
         expression: the expression.
-        python_modules: modules whose names the expression may use, ``math`` by default (its members also bare).
+        python_modules: the modules that the expression may use; by default ``math``, whose members can be used without
+            the module name, too.
     """
 
     expression: Texts = Texts()
@@ -34,7 +35,9 @@ class PythonExpression(DeclaredSubstitution, tag="eval"):
 
     @classmethod
     def parse(cls, data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
-        """Return the class and its arguments, for an expression and optional modules, separated by commas.
+        """Return the class and its keyword arguments for an expression and optional modules.
+
+        The modules are separated by commas.
 
         Raises:
             TypeError: the number of arguments is wrong.
@@ -50,12 +53,12 @@ class PythonExpression(DeclaredSubstitution, tag="eval"):
         return cls, kwargs
 
     def describe(self) -> str:
-        """The expression and the modules."""
+        """Return a text with the expression and the modules."""
         modules = ", ".join(module.describe() for module in self.python_modules)
         return f"PythonExpr({describe(self.expression)}, [{modules}])"
 
     def perform(self, context: LaunchContext) -> str:
-        """The value.
+        """Evaluate the expression, and return its value as text.
 
         The expression runs with all the rights of its launch file, which is a program anyway.
 

@@ -29,7 +29,10 @@ _WORDS = {"true": True, "1": True, "false": False, "0": False}
 
 
 def _operand(value: Any) -> list[Substitution]:
-    """Return an operand of a comparison, which may also be a number, a boolean or None."""
+    """Convert an operand of a comparison to substitutions.
+
+    The operand may also be a number, a boolean or None.
+    """
     if value is None:
         value = ""
     if isinstance(value, (bool, int, float)):
@@ -38,13 +41,16 @@ def _operand(value: Any) -> list[Substitution]:
 
 
 class EqualsSubstitution(DeclaredSubstitution, tag="equals"):
-    """``true`` if two texts are equal; two numbers, or two booleans, are compared as such."""
+    """Whether two texts are equal, as ``true`` or ``false``.
+
+    Numbers and booleans are compared by value.
+    """
 
     left: AnyTexts = AnyTexts(read=_operand)
     right: AnyTexts = AnyTexts(read=_operand)
 
     def perform(self, context: LaunchContext) -> str:
-        """``true`` or ``false``."""
+        """Return ``true`` if the texts are equal, else ``false``."""
         return _text(self._equal(context))
 
     def _equal(self, context: LaunchContext) -> bool:
@@ -60,31 +66,31 @@ class EqualsSubstitution(DeclaredSubstitution, tag="equals"):
 
 
 class NotEqualsSubstitution(EqualsSubstitution, tag="not-equals"):
-    """``true`` if two texts differ."""
+    """Whether two texts differ, as ``true`` or ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
-        """``true`` or ``false``."""
+        """Return ``true`` if the texts differ, else ``false``."""
         return _text(not self._equal(context))
 
 
 class NotSubstitution(DeclaredSubstitution, tag="not", shown="NotSubstitution({value})"):
-    """The negation of a boolean."""
+    """The negation of a boolean, as ``true`` or ``false``."""
 
     value: Texts = Texts()
 
     def perform(self, context: LaunchContext) -> str:
-        """``true`` or ``false``."""
+        """Return ``true`` if the value is false, else ``false``."""
         return _text(not _boolean(self, context, self.value))
 
 
 class AndSubstitution(DeclaredSubstitution, tag="and"):
-    """Whether both values are true."""
+    """Whether two values are both true, as ``true`` or ``false``."""
 
     left: Texts = Texts()
     right: Texts = Texts()
 
     def perform(self, context: LaunchContext) -> str:
-        """``true`` or ``false``."""
+        """Return ``true`` if both values are true, else ``false``."""
         return _text(all(self._truths(context)))
 
     def _truths(self, context: LaunchContext) -> list[bool]:
@@ -92,15 +98,15 @@ class AndSubstitution(DeclaredSubstitution, tag="and"):
 
 
 class OrSubstitution(AndSubstitution, tag="or"):
-    """Whether one of two values is true."""
+    """Whether at least one of two values is true, as ``true`` or ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
-        """``true`` or ``false``."""
+        """Return ``true`` if at least one value is true, else ``false``."""
         return _text(any(self._truths(context)))
 
 
 class _Several(Substitution):
-    """The base of substitutions that combine any number of values."""
+    """The base class of substitutions that combine any number of values."""
 
     def __init__(self, *args: SomeSubstitutionsType) -> None:
         self._values = [normalize_to_list_of_substitutions(value) for value in args]
@@ -111,7 +117,7 @@ class _Several(Substitution):
         return self._values
 
     def describe(self) -> str:
-        """The values."""
+        """Return a text with the values."""
         return f"{type(self).__name__}({', '.join(map(describe, self._values))})"
 
     def _truths(self, context: LaunchContext) -> list[bool]:
@@ -131,18 +137,18 @@ expose_substitution("all")(_parsed_all)
 
 
 class AnySubstitution(_Several):
-    """Whether any of several values is true."""
+    """Whether any of several values is true, as ``true`` or ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
-        """``true`` or ``false``."""
+        """Return ``true`` if any value is true, else ``false``."""
         return _text(any(self._truths(context)))
 
 
 class AllSubstitution(_Several):
-    """Whether all of several values are true."""
+    """Whether all of several values are true, as ``true`` or ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
-        """``true`` or ``false``."""
+        """Return ``true`` if all values are true, else ``false``."""
         return _text(all(self._truths(context)))
 
 
@@ -153,8 +159,8 @@ class IfElseSubstitution(
 
     Args:
         condition: the boolean.
-        if_value: the text if it is true.
-        else_value: the text if it is false.
+        if_value: the text if the boolean is true.
+        else_value: the text if the boolean is false.
     """
 
     condition: Texts = Texts()

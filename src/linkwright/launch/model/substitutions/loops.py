@@ -1,4 +1,4 @@
-"""Substitutions for the values of loops, see `linkwright.launch.model.actions.loops`."""
+"""Substitutions for the values of loops; see `linkwright.launch.model.actions.loops`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _PREFIX = "ForEachVar__"
 
 
 def local_name(name: str) -> str:
-    """The name of the local of the launch context that holds a value of a loop."""
+    """Return the name of the launch context's local that holds a loop value."""
     return _PREFIX + name
 
 
@@ -29,8 +29,8 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
     """A value of the current iteration of a `ForEach`.
 
     Args:
-        name: the value's name.
-        default_value: the text if the iteration has no such value; None makes that an error.
+        name: the name of the value.
+        default_value: the text if the iteration has no such value; with None, that is an error.
     """
 
     name: Texts = Texts()
@@ -43,11 +43,11 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
 
     @staticmethod
     def get_local_arg_name(name: str) -> str:
-        """The name of the local of the launch context that holds the value."""
+        """Return the name of the launch context's local that holds the value."""
         return local_name(name)
 
     def perform(self, context: LaunchContext) -> str:
-        """The value.
+        """Return the value.
 
         Raises:
             RuntimeError: LAUNCH123, there is no such value and no default.
@@ -69,7 +69,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
 
 
 class ForLoopIndex(ForEachVar, tag="index"):
-    """The index of the current iteration of a `ForLoop`, by the loop's name."""
+    """The index of the current iteration of the `ForLoop` with a name."""
 
     def __init__(self, name: SomeSubstitutionsType, **_: Any) -> None:
         super().__init__(name)

@@ -32,7 +32,7 @@ _LAUNCH_SUFFIXES = (".py", ".xml", ".yaml")
 
 
 class PathSubstitution(DeclaredSubstitution, shown="Path({path})"):
-    """A path. With ``/`` it gives a path below it: ``PathSubstitution("a") / "b"``."""
+    """A path; the operator ``/`` appends to it: ``PathSubstitution("a") / "b"``."""
 
     path: Texts = Texts()
 
@@ -40,14 +40,14 @@ class PathSubstitution(DeclaredSubstitution, shown="Path({path})"):
         return PathJoinSubstitution([self, other])
 
     def perform(self, context: LaunchContext) -> str:
-        """The path."""
+        """Return the path."""
         return perform_substitutions(context, self.path)
 
 
 class PathJoinSubstitution(DeclaredSubstitution, tag="path-join", shown="PathJoin({substitutions})"):
-    """Parts of a path, joined with the separator of the system.
+    """Parts of a path, joined with the system's separator.
 
-    Also written with the ``/`` operator: ``PathJoinSubstitution(["a"]) / "b"``.
+    The operator ``/`` appends a part: ``PathJoinSubstitution(["a"]) / "b"``.
     """
 
     substitutions: TextLists = TextLists(
@@ -56,10 +56,10 @@ class PathJoinSubstitution(DeclaredSubstitution, tag="path-join", shown="PathJoi
 
     @classmethod
     def parse(cls, data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
-        """The class and its arguments, for the parts.
+        """Return the class and its keyword arguments for the parts.
 
         Raises:
-            ValueError: there are none.
+            ValueError: there are no parts.
         """
         if not data:
             raise ValueError("path-join substitution expects at least 1 argument")
@@ -69,21 +69,21 @@ class PathJoinSubstitution(DeclaredSubstitution, tag="path-join", shown="PathJoi
         return PathJoinSubstitution([*self.substitutions, other])
 
     def perform(self, context: LaunchContext) -> str:
-        """The path."""
+        """Return the joined path."""
         return os.path.join(*(perform_substitutions(context, part) for part in self.substitutions))  # noqa: PTH118
 
 
 class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({name})"):
     """The path of a program on ``PATH``.
 
-    A program that `Command` runs in this process, or that a node of this process replaces, is found even
-    if it is not installed; the result is its bare name then.
+    A program that `Command` runs in this process, or that a node of this process replaces, is found even if it is not
+    installed. In that case, the result is its bare name.
     """
 
     name: Texts = Texts(kw_only=True)
 
     def perform(self, context: LaunchContext) -> str:
-        """The path.
+        """Return the path.
 
         Raises:
             SubstitutionFailure: LAUNCH124, there is no such program.
@@ -110,7 +110,7 @@ class FileContent(DeclaredSubstitution, tag="file-content"):
     path: Texts = Texts()
 
     def perform(self, context: LaunchContext) -> str:
-        """The text.
+        """Read the file, and return its text.
 
         Raises:
             SubstitutionFailure: LAUNCH125, the file cannot be read.
@@ -130,7 +130,7 @@ class FileContent(DeclaredSubstitution, tag="file-content"):
 
 
 class FindLaunchfile(DeclaredSubstitution, tag="find-launchfile", shown="FindLaunchfile(name={name}, path={path})"):
-    """The path of the launch file with a name in a folder, of any kind.
+    """The path of the launch file with a given name in a folder, of any kind.
 
     Args:
         name: the name of the file, or its stem without ``.launch``, ``_launch`` and the extension.
@@ -141,7 +141,7 @@ class FindLaunchfile(DeclaredSubstitution, tag="find-launchfile", shown="FindLau
     path: Texts = Texts(kw_only=True)
 
     def perform(self, context: LaunchContext) -> str:
-        """The path.
+        """Return the path.
 
         Raises:
             SubstitutionFailure: LAUNCH125, there is no such file, or more than one.

@@ -17,10 +17,10 @@ from linkwright.launch.model.substitution import (
 
 
 class StringJoinSubstitution(DeclaredSubstitution, tag="string-join", shown="StringJoin({delimiter}, {substitutions})"):
-    """Texts with a delimiter between them.
+    """Texts joined with a delimiter between them.
 
     Args:
-        substitutions: the texts; each may be made of several.
+        substitutions: the texts; each may consist of several substitutions.
         delimiter: the delimiter.
     """
 
@@ -29,7 +29,7 @@ class StringJoinSubstitution(DeclaredSubstitution, tag="string-join", shown="Str
 
     @classmethod
     def parse(cls, data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
-        """The class and its arguments, for a delimiter and texts.
+        """Return the class and its keyword arguments for a delimiter and texts.
 
         Raises:
             ValueError: there are not enough arguments.
@@ -39,13 +39,13 @@ class StringJoinSubstitution(DeclaredSubstitution, tag="string-join", shown="Str
         return cls, {"delimiter": data[0], "substitutions": data[1:]}
 
     def perform(self, context: LaunchContext) -> str:
-        """The joined text."""
+        """Return the joined text."""
         delimiter = perform_substitutions(context, self.delimiter)
         return delimiter.join(perform_substitutions(context, part) for part in self.substitutions)
 
 
 class _OfOneText(DeclaredSubstitution):
-    """The base of substitutions of one text."""
+    """The base class of substitutions with a single text."""
 
     value: Texts = Texts()
 
@@ -54,21 +54,21 @@ class StringStripSubstitution(_OfOneText, tag="string-strip"):
     """A text without leading and trailing whitespace."""
 
     def perform(self, context: LaunchContext) -> str:
-        """The text."""
+        """Return the stripped text."""
         return perform_substitutions(context, self.value).strip()
 
 
 class IsEmptySubstitution(_OfOneText, tag="is-empty"):
-    """Whether a text has no characters."""
+    """Whether a text is empty, as ``true`` or ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
-        """``true`` or ``false``."""
+        """Return ``true`` if the text is empty, else ``false``."""
         return "false" if perform_substitutions(context, self.value) else "true"
 
 
 class NotEmptySubstitution(_OfOneText, tag="not-empty"):
-    """Whether a text has characters."""
+    """Whether a text is not empty, as ``true`` or ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
-        """``true`` or ``false``."""
+        """Return ``true`` if the text is not empty, else ``false``."""
         return "true" if perform_substitutions(context, self.value) else "false"

@@ -1,1 +1,4 @@
-"""The API of ``launch_pytest``: launches as pytest fixtures, and tests that run during and after them."""
+"""The API of ``launch_pytest``.
+
+Launches are pytest fixtures, and tests run during and after them.
+"""

@@ -1,4 +1,7 @@
-"""The fixtures of ``launch_pytest``: descriptions that are launched for tests, with their service, context and loop."""
+"""The fixtures of ``launch_pytest``.
+
+They provide launch descriptions for tests, with their service, context and event loop.
+"""
 
 from __future__ import annotations
 
@@ -24,9 +27,10 @@ class LaunchOptions:
 
     Attributes:
         fixture: the name of the fixture.
-        scope: the duration of the launch: one of pytest's scopes.
+        scope: how long the launch lasts: one of pytest's scopes.
         shutdown_when_idle: whether the launch ends when it is idle.
-        auto_shutdown: whether it is shut down before tests that run after it; otherwise they wait for its end.
+        auto_shutdown: whether the launch is shut down before the tests that run after it; otherwise they wait for it to
+            end.
     """
 
     fixture: str
@@ -42,18 +46,18 @@ def fixture(
     auto_shutdown: bool = True,
     **kwargs: Any,
 ) -> Any:
-    """Decorate a function that creates a launch description, to launch it for the tests that name it.
+    """Decorate a function that creates a launch description for tests.
 
-    The function returns or yields a ``LaunchDescription``, or a sequence whose first item is one. A launch that
-    outlasts a test needs the other fixtures of this module to last as long: unless the test's module has its own,
-    they are put there.
+    It is launched for the tests that request it. The function returns or yields a ``LaunchDescription``, or a sequence
+    whose first item is one. If a launch outlasts a test, the other fixtures of this module must last as long. They are
+    therefore added to the test's module, unless it defines its own.
 
     Args:
-        decorated: the function, where the decorator has no arguments.
-        *args: for ``pytest.fixture``.
+        decorated: the function, if the decorator has no arguments.
+        *args: passed to ``pytest.fixture``.
         shutdown_when_idle: whether the launch ends when it is idle.
-        auto_shutdown: whether the launch is ended once the tests that run beside it are over.
-        **kwargs: for ``pytest.fixture``; a ``scope`` that depends on the configuration is not supported.
+        auto_shutdown: whether the launch is ended once the tests that run during it are finished.
+        **kwargs: passed to ``pytest.fixture``; a ``scope`` that depends on the configuration is not supported.
     """
     scope = kwargs.get("scope", "function")
     if scope != "function":
@@ -64,20 +68,26 @@ def fixture(
         options = LaunchOptions(name, scope, shutdown_when_idle, auto_shutdown)
         setattr(function, _OPTIONS, options)
         made: Any = pytest.fixture(*args, **kwargs)(function)
-        setattr(made, _OPTIONS, options)  # the marker gets this object, and pytest's hook the function
+        setattr(made, _OPTIONS, options)  # the marker receives this object, pytest's hook the function
         return made
 
     return decorate if decorated is None else decorate(decorated)
 
 
 def options_of(function: object) -> LaunchOptions | None:
-    """Return the options of a fixture that `fixture` created, or of its function; None for any other."""
+    """Return the options of a fixture that `fixture` created, or of its function.
+
+    The result is None for any other object.
+    """
     options = getattr(function, _OPTIONS, None)
     return options if isinstance(options, LaunchOptions) else None
 
 
 def _provide(namespace: MutableMapping[str, Any], scope: str) -> None:
-    """Add fixtures with a scope to a module that has none, or ours with a shorter scope."""
+    """Add the fixtures to a module with a scope.
+
+    Fixtures of the module itself, or ours with at least that scope, are kept.
+    """
     for name, function in _FUNCTIONS.items():
         present = namespace.get(name)
         if present is None or _SCOPES.index(getattr(present, _SCOPE, _SCOPES[-1])) < _SCOPES.index(scope):
@@ -91,7 +101,7 @@ def _lasting(function: Callable[..., Any], scope: Any) -> Any:
 
 
 def _event_loop() -> Iterator[asyncio.AbstractEventLoop]:
-    """The event loop that the launch and coroutines of tests run on."""
+    """Yield the event loop that runs the launch and the coroutines of tests."""
     loop = asyncio.new_event_loop()
     asyncio.set_event_loop(loop)
     yield loop
@@ -102,14 +112,14 @@ def _event_loop() -> Iterator[asyncio.AbstractEventLoop]:
 
 
 def _launch_service(event_loop: asyncio.AbstractEventLoop) -> Iterator[LaunchService]:  # noqa: ARG001 - to outlast it
-    """The service that launches the description."""
+    """Yield the service that launches the description."""
     service = ServiceOfProcesses()
     yield service
     finish(service, "when the fixture launch_service ended")
 
 
 def _launch_context(launch_service: LaunchService) -> LaunchContext:
-    """The context of the launch."""
+    """Return the context of the launch."""
     return launch_service.context
 
 
@@ -127,12 +137,12 @@ launch_context = _lasting(_launch_context, "function")
 
 
 def finish(service: LaunchService, when: str, *, ask: bool = True) -> None:
-    """End a running launch, and wait for its end.
+    """End a running launch, and wait until it has ended.
 
     Args:
         service: the launch service.
         when: the phase, for the failure message.
-        ask: whether to end it; otherwise its own end is awaited.
+        ask: whether to shut the launch down; otherwise only wait until it ends on its own.
 
     Raises:
         pytest.fail.Exception: something in the launch failed.

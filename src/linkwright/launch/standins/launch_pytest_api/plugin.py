@@ -1,8 +1,10 @@
-"""The pytest plugin of ``launch_pytest``: launches the descriptions of its fixtures, and runs the marked tests.
+"""The pytest plugin of ``launch_pytest``.
 
-A test with ``@pytest.mark.launch(fixture=description)`` runs beside the launch: a coroutine on the launch's event
-loop, a function in a thread. With ``shutdown=True`` it runs once the launch has ended; a generator does so from its
-``yield`` on. Where the launch outlasts the test that second part is a test by itself, after all that run beside it.
+It launches the descriptions of fixtures and runs the marked tests. A test with
+``@pytest.mark.launch(fixture=description)`` runs during the launch: a coroutine on the launch's event loop, a function
+in a thread. With ``shutdown=True``, it runs after the launch has ended. A generator runs up to its ``yield`` during the
+launch, and the rest after it. If the launch outlasts the test, the rest is a separate test, which runs after all tests
+that run during the launch.
 """
 
 from __future__ import annotations
@@ -34,25 +36,28 @@ from linkwright.launch.standins.launch_pytest_api.fixtures import (
 if TYPE_CHECKING:
     from _pytest.fixtures import SubRequest
 
-__all__ = ["event_loop", "launch_context", "launch_service"]  # pytest finds the fixtures here
+__all__ = ["event_loop", "launch_context", "launch_service"]  # exported so that pytest finds the fixtures here
 
 _MARKER = "launch(fixture, shutdown=False): run the test beside the launch of a launch_pytest fixture, or after its end"
 _OVER = object()
 
 
 class LaunchTestWarning(pytest.PytestWarning):
-    """The mark of a test does not make it a launch test."""
+    """Issued when the mark of a test does not make it a launch test."""
 
 
 def look_up_hooks() -> None:
-    """Load the names of the stand-in ``launch_pytest.plugin``: pytest registers only existing hooks of a module."""
+    """Load the names of the stand-in ``launch_pytest.plugin``.
+
+    pytest registers only hooks that a module has.
+    """
     module = importlib.import_module("launch_pytest.plugin")
     for name in module.__all__:
         getattr(module, name)
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Register the marker."""
+    """Register the marker ``launch``."""
     config.addinivalue_line("markers", _MARKER)
 
 
@@ -72,14 +77,14 @@ def pytest_fixture_setup(fixturedef: pytest.FixtureDef[Any], request: SubRequest
     fixturedef.addfinalizer(functools.partial(finish, service, when, ask=options.auto_shutdown))
     try:
         _launch(service, loop, _description_in(made, when), options)
-    except BaseException as error:  # other tests with the fixture get the same
+    except BaseException as error:  # other tests with the fixture get the same error
         fixturedef.cached_result = (None, fixturedef.cache_key(request), (error, error.__traceback__))
         raise
     return made
 
 
 def _description_in(made: object, when: str) -> LaunchDescription:
-    """Return the description in the result of a launch fixture."""
+    """Return the launch description in the result of a launch fixture."""
     first = made[0] if isinstance(made, Sequence) and made else made
     if not isinstance(first, LaunchDescription):
         pytest.fail(
@@ -92,7 +97,7 @@ def _description_in(made: object, when: str) -> LaunchDescription:
 def _launch(
     service: LaunchService, loop: asyncio.AbstractEventLoop, description: LaunchDescription, options: LaunchOptions
 ) -> None:
-    """Start a launch, and return when its `ReadyToTest` has been visited."""
+    """Start a launch, and wait until its `ReadyToTest` has been visited."""
     actions = list(ready_actions(description.entities))
     if len(actions) > 1:
         pytest.fail(f"launch fixture '{options.fixture}': only one ReadyToTest action may be in it", pytrace=False)
@@ -107,7 +112,7 @@ def _launch(
     loop.run_until_complete(asyncio.wait({waiting, run}, return_when=asyncio.FIRST_COMPLETED))
     if not ready.is_set():
         waiting.cancel()
-        run.result()  # raises the exception of run_async
+        run.result()  # raises the exception of run_async, if it failed
         pytest.fail(f"launch fixture '{options.fixture}': the launch ended before it was ready to test", pytrace=False)
 
 
@@ -115,12 +120,12 @@ def _launch(
 
 
 class LaunchTest(pytest.Function):
-    """A test that runs during a launch, or its part that runs after the launch.
+    """A test that runs during a launch, or the part of a test that runs after the launch.
 
     Attributes:
         options: the options of the launched fixture.
         test: the test's function or bound method.
-        begun: the generator, after the part before its ``yield`` has passed.
+        begun: the generator, once the part before its ``yield`` has passed.
         first_part: the test whose generator this one continues; None for a separate test.
     """
 
@@ -131,7 +136,7 @@ class LaunchTest(pytest.Function):
 
     @classmethod
     def of(cls, item: pytest.Function, options: LaunchOptions, first_part: LaunchTest | None = None) -> LaunchTest:
-        """Return the launch test of a function that pytest collected."""
+        """Create the launch test for a function that pytest collected."""
         ending = "" if first_part is None else "[shutdown_test]"
         made: LaunchTest = cls.from_parent(
             item.parent,
@@ -140,27 +145,27 @@ class LaunchTest(pytest.Function):
             callobj=_plain(item.obj),
             fixtureinfo=item._fixtureinfo,
             keywords=item.keywords,
-            originalname=item.originalname + ending,  # which newer pytest takes for the identifier
+            originalname=item.originalname + ending,  # newer versions of pytest use it as the identifier
         )
         made.options, made.test, made.first_part = options, item.obj, first_part
         return made
 
     @property
     def is_after_shutdown(self) -> bool:
-        """Whether it runs once the launch has ended."""
+        """Whether the test runs after the launch has ended."""
         marker = self.get_closest_marker("launch")
         return self.first_part is not None or bool(marker and marker.kwargs.get("shutdown", False))
 
     @property
     def launch(self) -> tuple[object, ...]:
-        """The key of tests with the same launch."""
+        """The key that is equal for tests with the same launch."""
         kinds: dict[str, Any] = {"function": pytest.Function, "class": pytest.Class, "module": pytest.Module}
         lasting = self.getparent(kinds.get(self.options.scope, pytest.Session)) or self.getparent(pytest.Module)
         params = self.callspec.indices if hasattr(self, "callspec") else {}
         return self.options.fixture, lasting, params.get(self.options.fixture)
 
     def runtest(self) -> None:
-        """Run the test or its part."""
+        """Run the test, or the part of it that this item represents."""
         __tracebackhide__ = True
         loop = self._loop
         given = {name: self.funcargs[name] for name in self._fixtureinfo.argnames}
@@ -199,7 +204,7 @@ class LaunchTest(pytest.Function):
         finish(service, f"before test '{self.name}'", ask=self.options.auto_shutdown)
 
     def _resume(self, loop: asyncio.AbstractEventLoop, generator: Any) -> None:
-        """Run the part after the ``yield``."""
+        """End the launch, and run the part of the test after the ``yield``."""
         __tracebackhide__ = True
         self._end_launch()
         is_async = inspect.isasyncgen(generator)
@@ -217,7 +222,10 @@ def _has_parts(test: Callable[..., Any]) -> bool:
 
 
 def _plain(test: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function with the same arguments for pytest: plugins for coroutines would run a coroutine themselves."""
+    """Return a plain function with the test's arguments for pytest.
+
+    Otherwise, plugins for coroutines would run the coroutine themselves.
+    """
 
     @functools.wraps(getattr(test, "__func__", test))
     def plain(*_: object, **__: object) -> None:
@@ -231,7 +239,7 @@ def _plain(test: Callable[..., Any]) -> Callable[..., Any]:
 def pytest_pycollect_makeitem(
     collector: pytest.Module | pytest.Class, name: str, obj: object
 ) -> list[pytest.Function] | None:
-    """Collect the marked tests."""
+    """Collect the tests that are marked with ``launch``."""
     if not inspect.isfunction(obj) or not collector.funcnamefilter(name):
         return None
     marks = [mark for mark in getattr(obj, "pytestmark", ()) if mark.name == "launch"]
@@ -259,7 +267,7 @@ def _skipped(item: pytest.Function) -> pytest.Function:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Order tests that run after a launch behind all tests that run during it."""
+    """Move tests that run after a launch behind all tests that run during it."""
     last = {
         item.launch: index
         for index, item in enumerate(items)

@@ -1,9 +1,9 @@
-"""Waits for the output and exit of processes in a launch (``launch_pytest.tools.process``).
+"""Functions that wait for output or the exit of processes (``launch_pytest.tools.process``).
 
 Each function takes the launch's context, the action that runs the process, and a timeout in seconds, or None to wait
-without end. The coroutines are for tests that run on the launch's event loop, the functions that end in ``_sync`` for
-tests that run in a thread beside it. A start or an exit before the call does not count: as in ROS, the next one is
-waited for. Output is available only for actions with ``cached_output=True``.
+without limit. The coroutines are for tests that run on the launch's event loop. The functions whose names end in
+``_sync`` are for tests that run in another thread. As in ROS, a start or an exit before the call does not count: the
+functions wait for the next one. Output is available only for actions with ``cached_output=True``.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ _P = ParamSpec("_P")
 
 
 class _Wait:
-    """A wait for an event or for a condition.
+    """Waits for an event or for a condition.
 
     Args:
         context: the context of the launch.
-        handler: creates the handler of such events, which calls a function.
-        timeout: in seconds; None to wait without limit.
-        condition: the condition to hold now or after an event; without it, the first event ends the wait.
+        handler: creates a handler of the events, given the function that the handler calls.
+        timeout: the timeout in seconds; None to wait without limit.
+        condition: the condition that must hold now or after an event; without it, the first event ends the wait.
         given_up: called on a timeout.
     """
 
@@ -54,7 +54,7 @@ class _Wait:
         self._happened = False
 
     async def run(self) -> Any:
-        """Wait on the launch's event loop; return the last value of the condition."""
+        """Wait on the launch's event loop, and return the last value of the condition."""
         event = asyncio.Event()
         with self._listening(event.set):
             value = self._value()
@@ -70,7 +70,7 @@ class _Wait:
         return value
 
     def run_sync(self) -> Any:
-        """Wait in another thread than the loop; return the last value of the condition."""
+        """Wait in a thread other than the event loop's, and return the last value of the condition."""
         event = threading.Event()
         with self._listening(event.set):
             value = self._value()
@@ -91,7 +91,7 @@ class _Wait:
 
     @contextmanager
     def _listening(self, notify: Callable[[], None]) -> Iterator[None]:
-        """Call `notify` after each event."""
+        """Call `notify` after each event while the context is active."""
 
         def react(*_: object) -> None:
             self._happened = True
@@ -106,12 +106,15 @@ class _Wait:
 
 
 def _remaining(deadline: float | None) -> float | None:
-    """Return the seconds until a time on the monotonic clock, at least 0."""
+    """Return the seconds until a deadline on the monotonic clock, at least 0."""
     return None if deadline is None else max(deadline - time.monotonic(), 0.0)
 
 
 def _waits(make: Callable[_P, _Wait]) -> tuple[Callable[_P, Coroutine[Any, Any, Any]], Callable[_P, Any]]:
-    """Return a coroutine and a function that run a wait, with the signature and docstring of its factory."""
+    """Return a coroutine function and a function that run a wait.
+
+    They have the signature and docstring of `make`.
+    """
 
     @wraps(make)
     async def wait(*args: _P.args, **kwargs: _P.kwargs) -> Any:
@@ -131,7 +134,10 @@ def _for_output(stream: str) -> Callable[..., _Wait]:
         validate_output: Validate,
         timeout: float | None = None,
     ) -> _Wait:
-        """Wait until `validate_output` returns a true value for all output so far; return its last value."""
+        """Wait until `validate_output` accepts all output so far.
+
+        It accepts by returning a true value. Return its last value.
+        """
         handler, read = _output_reader(execute_process_action, stream)
         return _Wait(launch_context, handler, timeout, lambda: validate_output(read()))
 
@@ -145,7 +151,10 @@ def _asserting_output(stream: str) -> Callable[..., _Wait]:
         validate_output: Validate,
         timeout: float | None = None,
     ) -> _Wait:
-        """Wait until `validate_output` no longer raises AssertionError for all output so far; at last, let it raise."""
+        """Wait until `validate_output` raises no AssertionError for all output so far.
+
+        On a timeout, it is called once more, and may raise.
+        """
         handler, read = _output_reader(execute_process_action, stream)
 
         def holds() -> bool:
@@ -163,7 +172,7 @@ def _asserting_output(stream: str) -> Callable[..., _Wait]:
 def _for_start(
     launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
 ) -> _Wait:
-    """Wait until the process starts; returns whether it did in time."""
+    """Wait until the process starts, and return whether it started in time."""
 
     def handler(react: Reaction) -> Handler:
         return OnProcessStart(target_action=execute_process_action, on_start=react)
@@ -174,7 +183,7 @@ def _for_start(
 def _for_exit(
     launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
 ) -> _Wait:
-    """Wait until the process ends; returns whether it did in time."""
+    """Wait until the process ends, and return whether it ended in time."""
 
     def handler(react: Reaction) -> Handler:
         return OnProcessExit(target_action=execute_process_action, on_exit=react)
@@ -183,7 +192,10 @@ def _for_exit(
 
 
 def _output_reader(action: ExecuteLocal, stream: str) -> tuple[Callable[[Reaction], Handler], Callable[[], str]]:
-    """Return a factory of handlers for output to ``stdout`` or ``stderr``, and a function that returns the output."""
+    """Return a factory of handlers for output, and a function that returns the output.
+
+    The stream is ``stdout`` or ``stderr``.
+    """
 
     def handler(react: Reaction) -> Handler:
         return OnProcessIO(target_action=action, **{f"on_{stream}": react})  # type: ignore[arg-type]  # a keyword by its name

@@ -1,1 +1,4 @@
-"""``launch_testing`` and ``launch_testing_ros``: tests of ``unittest`` that run during a launch and after its end."""
+"""``launch_testing`` and ``launch_testing_ros``: tests during and after a launch.
+
+The tests are those of ``unittest``.
+"""

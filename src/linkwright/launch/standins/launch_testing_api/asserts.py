@@ -33,11 +33,11 @@ def assertExitCodes(
     *,
     strict_proc_matching: bool = True,
 ) -> None:
-    """Raise AssertionError unless processes ended with one of some exit codes.
+    """Raise AssertionError unless processes ended with one of the allowed exit codes.
 
     Args:
         proc_info: the records of exits.
-        allowable_exit_codes: the codes.
+        allowable_exit_codes: the allowed exit codes.
         process: an action, or a part of the name of a process; None for all processes.
         cmd_args: arguments of the process, see `resolveProcesses`.
         strict_proc_matching: whether a name must match only one process.
@@ -69,14 +69,14 @@ def assertInStream(
         expected_output: a text, a regular expression, or several of them in order.
         process: an action, or a part of the name of a process; None for any process.
         cmd_args: arguments of the process, see `resolveProcesses`.
-        output_filter: a function to filter the output first.
+        output_filter: a function that filters the output before the search.
         strict_proc_matching: whether a name must match only one process.
-        strip_ansi_escape_sequences: whether to remove colours first.
+        strip_ansi_escape_sequences: whether to remove colours before the search.
         stream: ``stdout`` or ``stderr``.
 
     Raises:
         ValueError: `output_filter` cannot be called, or there is no such stream.
-        NoMatchingProcessException: no such process wrote anything.
+        NoMatchingProcessException: no such process wrote any output.
     """
     found = resolveProcesses(proc_output, process=process, cmd_args=cmd_args, strict_proc_matching=strict_proc_matching)
     if output_filter is not None and not callable(output_filter):
@@ -101,7 +101,10 @@ def assertInStdout(
     cmd_args: str | Sequence[str] | None = None,
     **kwargs: Any,
 ) -> None:
-    """`assertInStream` for standard output."""
+    """Raise AssertionError unless the standard output contains a text.
+
+    See `assertInStream`.
+    """
     assertInStream(proc_output, expected_output, process, cmd_args, stream="stdout", **kwargs)
 
 
@@ -112,17 +115,20 @@ def assertInStderr(
     cmd_args: str | Sequence[str] | None = None,
     **kwargs: Any,
 ) -> None:
-    """`assertInStream` for standard error."""
+    """Raise AssertionError unless the standard error contains a text.
+
+    See `assertInStream`.
+    """
     assertInStream(proc_output, expected_output, process, cmd_args, stream="stderr", **kwargs)
 
 
 def assertDefaultStream() -> str:
-    """Return the stream that `assertInStream` looks at by default."""
+    """Return the name of the stream that `assertInStream` searches by default."""
     return "stderr"
 
 
 def text_of(written: Sequence[Any], stream: str | None = None) -> str:
-    """Return what a process wrote to a stream, or to both, as one text."""
+    """Return the output of a process to one stream, or to both, as one text."""
     kept = (event for event in written if stream is None or getattr(event, f"from_{stream}"))
     return b"".join(event.text for event in kept).decode(errors="replace")
 
@@ -131,7 +137,7 @@ def text_of(written: Sequence[Any], stream: str | None = None) -> str:
 def assertSequentialStdout(
     proc_output: ProcessRecords, process: ExecuteLocal | str, cmd_args: str | Sequence[str] | None = None
 ) -> Iterator[SequentialTextChecker]:
-    """Yield a checker that finds texts in the output of one process in order.
+    """Yield a checker that finds texts in the output of a process in order.
 
     Args:
         proc_output: the output of the processes.
@@ -143,10 +149,10 @@ def assertSequentialStdout(
 
 
 class SequentialTextChecker:
-    """Finds texts in order.
+    """Finds texts in an output in order.
 
     Args:
-        output: the output in pieces; each text is searched within single pieces.
+        output: the output in chunks; each text must be within a single chunk.
     """
 
     def __init__(self, output: Sequence[str]) -> None:

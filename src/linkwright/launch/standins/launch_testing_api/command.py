@@ -1,4 +1,7 @@
-"""The command ``launch_test``: run the tests of a file beside their launch (``launch_testing.launch_test``)."""
+"""The command ``launch_test``, which runs tests during their launch.
+
+It is the counterpart of ``launch_testing.launch_test``.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def parse_arguments() -> tuple[argparse.ArgumentParser, argparse.Namespace]:
-    """Return the parser of the command, and the parsed ``sys.argv``."""
+    """Parse ``sys.argv``, and return the parser of the command with the result."""
     parser = argparse.ArgumentParser(prog="launch_test", description="Run the tests of a file beside their launch.")
     add_arguments(parser)
     return parser, parser.parse_args()
@@ -50,10 +53,10 @@ def run(
     Args:
         parser: the parser, for usage errors.
         args: the arguments that `add_arguments` declares.
-        test_runner_cls: runs the tests.
+        test_runner_cls: the class that runs the tests.
 
     Returns:
-        0 if all tests passed, 1 if not.
+        0 if all tests passed, else 1.
     """
     path = Path(args.launch_test_file).absolute()
     if not path.is_file():
@@ -80,12 +83,12 @@ def run(
 
 
 def print_arguments_of_launch_description(*, launch_description: LaunchDescription) -> None:
-    """Print the arguments of a description."""
+    """Print the arguments of a launch description."""
     print(argument_listing(launch_description))
 
 
 def main() -> None:
-    """Run the command, and exit with its status: 0 or 1, 2 for a usage error."""
+    """Run the command, and exit with its status: 0 or 1, or 2 for a usage error."""
     parser, args = parse_arguments()
     sys.exit(run(parser, args))
 

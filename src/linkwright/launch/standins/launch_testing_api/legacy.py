@@ -1,4 +1,7 @@
-"""Tests as processes of a launch that exit with 0 (``launch_testing.legacy``), as in nav2 and others."""
+"""Tests that are processes of a launch and exit with 0 (``launch_testing.legacy``).
+
+nav2 and others use such tests.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,10 @@ _OutputTest = tuple[Any, Callable[[Any, bytes], Any], Callable[[Any, Any], bool]
 
 
 class LaunchTestService:
-    """Ends a launch when its tests are done, and returns the status of the first failed one."""
+    """Ends a launch when its tests are finished.
+
+    Running it returns the status of the first failed test.
+    """
 
     def __init__(self) -> None:
         self._tests: dict[str, str] = {}
@@ -26,12 +32,15 @@ class LaunchTestService:
     def add_fixture_action(
         self, launch_description: Any, action: _Action, exit_allowed: Collection[int] | bool = (0,)
     ) -> _Action:
-        """Add an action that the tests need; if it is a process that exits, the launch ends.
+        """Add an action that the tests need.
+
+        If it is a process, an exit that is not allowed ends the launch.
 
         Args:
-            launch_description: the description to add it to.
+            launch_description: the description to which the action is added.
             action: the action.
-            exit_allowed: the statuses with which the process may exit before the tests, or whether it may with any.
+            exit_allowed: the statuses with which the process may exit before the tests, or whether any status is
+                allowed.
         """
         launch_description.add_action(action)
 
@@ -47,7 +56,7 @@ class LaunchTestService:
         return action
 
     def add_test_action(self, launch_description: Any, action: _Action) -> _Action:
-        """Add a test: a process passes if it exits with 0, another action if it is completed."""
+        """Add a test, which passes if a process exits with 0, or if another action completes."""
         test = f"test_{id(action)}"
 
         def on_exit(event: Any, _: Any) -> Any:
@@ -87,10 +96,10 @@ class LaunchTestService:
 
         Args:
             launch_description: the description with the process.
-            action: the process.
+            action: the action of the process.
             output_test: a test from `linkwright.launch.standins.launch_testing_api.legacy_output`.
             test_suffix: a suffix that distinguishes several tests of one process.
-            output_filter: a function to filter the output.
+            output_filter: a function that filters the output.
             side_effect: ``shutdown`` ends the launch once the test has passed.
         """
         test = f"test_{id(action)}_{test_suffix}"
@@ -105,7 +114,7 @@ class LaunchTestService:
             return None if missing else self._passed(test, side_effect)
 
         def on_exit(*_: Any) -> Any:
-            return self._ended(test) if missing else None  # the last lines may come after the end
+            return self._ended(test) if missing else None  # the last lines may arrive after the exit
 
         def on_shutdown(*_: Any) -> None:
             if missing:
@@ -120,7 +129,10 @@ class LaunchTestService:
         return action
 
     def run(self, launch_service: Any, *args: Any, **kwargs: Any) -> int:
-        """Run a launch service; return its status, or if that is 0, the status of the first failed test."""
+        """Run a launch service, and return its status.
+
+        If that is 0, return the status of the first failed test.
+        """
         status = int(launch_service.run(*args, **kwargs))
         return status or next(iter(self._statuses), int(_FAILED in self._tests.values()))
 

@@ -1,4 +1,4 @@
-"""Tests of the output of a process (``launch_testing.legacy.output``), all in bytes."""
+"""Tests of the output of a process (``launch_testing.legacy.output``); they work on bytes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def get_default_filtered_prefixes() -> list[bytes]:
 
 
 def get_default_filtered_patterns() -> list[bytes]:
-    """Return the patterns of lines to ignore: none."""
+    """Return the patterns of lines to ignore, which is an empty list."""
     return []
 
 
@@ -25,7 +25,7 @@ def create_output_lines_filter(
     filtered_patterns: Sequence[bytes] | None = None,
     filtered_rmw_implementation: str | None = None,  # noqa: ARG001  # ours writes nothing
 ) -> Callable[[bytes], bytes]:
-    """Return a filter that removes lines with a prefix or pattern from an output."""
+    """Return a function that removes lines with certain prefixes or patterns from an output."""
     prefixes = tuple(filtered_prefixes or get_default_filtered_prefixes())
     patterns = [
         re.compile(filtered_pattern) for filtered_pattern in filtered_patterns or get_default_filtered_patterns()
@@ -43,20 +43,22 @@ def create_output_lines_filter(
 
 
 def create_output_lines_test(expected_lines: Sequence[bytes]) -> _OutputTest:
-    """Return a test that each of these texts is in a line."""
+    """Return a test that passes when each of these texts is found in a line."""
     return b"", _joined, lambda output, text: any(text in line for line in output.splitlines()), expected_lines
 
 
 def create_output_regex_test(expected_patterns: Sequence[re.Pattern[bytes]]) -> _OutputTest:
-    """Return a test that each of these patterns matches."""
+    """Return a test that passes when each of these patterns matches."""
     return b"", _joined, lambda output, pattern: pattern.search(output) is not None, expected_patterns
 
 
 def create_output_test_from_file(output_file: str) -> _OutputTest:
-    """Return a test from a file ``.txt`` with lines, or ``.regex`` with patterns.
+    """Return a test that is defined by a file.
+
+    It is a ``.txt`` file with lines, or a ``.regex`` file with patterns.
 
     Args:
-        output_file: its path without the suffix.
+        output_file: the path of the file without the suffix.
 
     Raises:
         RuntimeError: neither file exists.

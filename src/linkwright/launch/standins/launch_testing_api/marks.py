@@ -1,4 +1,4 @@
-"""Decorators for the functions and classes of a launch test (``launch_testing``'s)."""
+"""Decorators of ``launch_testing`` for the functions and classes of a launch test."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ TIMEOUT = "__ready_to_test_action_timeout__"
 
 
 def parametrize(argnames: str, argvalues: Iterable[Any]) -> Callable[[Callable[..., Any]], Callable[[], Any]]:
-    """Decorate ``generate_test_description`` so that it is launched for several values of its arguments.
+    """Decorate ``generate_test_description`` to launch it once for each of several values.
 
     Args:
-        argnames: the names of the arguments, with commas between them.
-        argvalues: a value for each launch; a tuple of them for several arguments.
+        argnames: the names of the arguments, separated by commas.
+        argvalues: a value for each launch; for several arguments, a tuple of values.
     """
     names = [name.strip() for name in argnames.split(",") if name.strip()]
     values = [argvalue if isinstance(argvalue, tuple) else (argvalue,) for argvalue in argvalues]
@@ -45,7 +45,7 @@ def parametrize(argnames: str, argvalues: Iterable[Any]) -> Callable[[Callable[.
 
 
 def post_shutdown_test() -> Callable[[type[C]], type[C]]:
-    """Decorate a class of tests that run after the launch; TypeError if it is not a class."""
+    """Decorate a class of tests that run after the launch; raise TypeError if it is not a class."""
 
     def decorate(test_item: type[C]) -> type[C]:
         if not isinstance(test_item, type):
@@ -57,7 +57,7 @@ def post_shutdown_test() -> Callable[[type[C]], type[C]]:
 
 
 def ready_to_test_action_timeout(timeout: float) -> Callable[[F], F]:
-    """Decorate ``generate_test_description`` with the timeout for its `ReadyToTest` in seconds."""
+    """Decorate ``generate_test_description`` with the timeout for its `ReadyToTest`, in seconds."""
 
     def decorate(function: F) -> F:
         setattr(function, TIMEOUT, timeout)
@@ -67,7 +67,10 @@ def ready_to_test_action_timeout(timeout: float) -> Callable[[F], F]:
 
 
 def keep_alive(test_description: F) -> F:
-    """Decorate ``generate_test_description`` to keep the launch running without processes until the tests end."""
+    """Decorate ``generate_test_description`` to keep the launch running until the tests end.
+
+    This is for launches without processes.
+    """
     if not hasattr(test_description, MARKERS):
         setattr(test_description, MARKERS, {})
     getattr(test_description, MARKERS)["keep_alive"] = True
@@ -75,11 +78,11 @@ def keep_alive(test_description: F) -> F:
 
 
 def retry_on_failure(*, times: int, delay: float | None = None) -> Callable[[F], F]:
-    """Decorate a test to retry on a failed assertion.
+    """Decorate a test to retry it when an assertion fails.
 
     Args:
-        times: the number of attempts.
-        delay: seconds between attempts.
+        times: the maximum number of attempts.
+        delay: the time between attempts in seconds.
     """
     if times <= 0:
         raise AssertionError("times must be positive")
@@ -108,7 +111,7 @@ def retry_on_failure(*, times: int, delay: float | None = None) -> Callable[[F],
 
 
 def _has_passed(test: Any) -> bool:
-    """Return whether no subtest of a test has failed; unittest has no public API for it."""
+    """Return whether no subtest of a test has failed; unittest has no public API for this."""
     outcome = test._outcome
     return outcome is None or bool(outcome.success)
 
@@ -117,7 +120,7 @@ def _forget_failures(test: Any) -> None:
     outcome = getattr(test, "_outcome", None)
     if outcome is None:
         return
-    if hasattr(outcome, "errors"):  # before Python 3.11
+    if hasattr(outcome, "errors"):  # Python before 3.11
         outcome.errors.clear()
     elif outcome.result is not None:
         outcome.result.errors.clear()
@@ -126,7 +129,7 @@ def _forget_failures(test: Any) -> None:
 
 
 class ReadyAggregator:
-    """Calls a function after its own has been called a number of times.
+    """Calls a function once its own method `ready_fn` has been called a number of times.
 
     Args:
         ready_fn: the function to call.

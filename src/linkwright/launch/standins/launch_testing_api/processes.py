@@ -1,4 +1,4 @@
-"""The selection of processes of a launch in tests (``launch_testing.util``)."""
+"""Selection of processes of a launch in tests (``launch_testing.util``)."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ _WAIT = "import signal, threading; signal.signal(signal.SIGINT, lambda *_: exit(
 
 
 class NoMatchingProcessException(Exception):
-    """No process matches."""
+    """Raised when no process matches."""
 
 
 class ProcessRecords(Protocol):
-    """The records of processes."""
+    """The interface of records of processes."""
 
     def processes(self) -> Collection[ExecuteLocal]:
-        """The actions of the processes."""
+        """Return the actions of the processes."""
 
     def __getitem__(self, key: Any) -> Any:
         """Return the record of a process."""
 
 
 def KeepAliveProc() -> ExecuteProcess:
-    """Return a process that does nothing until the launch ends, so that the launch does not end before the tests."""
+    """Return a process that does nothing, which keeps the launch from ending before the tests."""
     return ExecuteProcess(cmd=[sys.executable, "-c", _WAIT])
 
 
@@ -44,15 +44,16 @@ def resolveProcesses(
     """Return the actions of the matching processes, at least one.
 
     Args:
-        info_obj: the records.
+        info_obj: the records of processes.
         process: an action, or a part of the name of a process; None for all processes.
-        cmd_args: arguments that the command has, beside a name; `NO_CMD_ARGS` for a command without any.
+        cmd_args: arguments that the command must contain, in addition to a matching name; `NO_CMD_ARGS` for a command
+            without arguments.
         strict_proc_matching: whether a name must match only one process.
 
     Raises:
-        NoMatchingProcessException: there is none.
-        Exception: there are several with the name.
-        TypeError: `process` is something else.
+        NoMatchingProcessException: no process matches.
+        Exception: several processes match the name.
+        TypeError: `process` has another type.
     """
     known = list(info_obj.processes())
     if process is None:
@@ -84,7 +85,7 @@ def resolveProcesses(
 
 
 def name_of(action: ExecuteLocal) -> str:
-    """Return the name of a process in the log; an empty text before it has started."""
+    """Return the name of a process in the log, or an empty text before it has started."""
     return str((action.process_details or {}).get("name") or action.process_description.final_name or "")
 
 
@@ -98,7 +99,7 @@ def _has_words(action: ExecuteLocal, words: Sequence[str] | None) -> bool:
 
 
 def _called(action: ExecuteLocal) -> str:
-    """Return the name and arguments of a process, for messages."""
+    """Return the name and arguments of a process as text for messages."""
     details = action.process_details
     if details:
         return " ".join([details["name"], *details["cmd"][1:]])
@@ -108,6 +109,6 @@ def _called(action: ExecuteLocal) -> str:
 
 
 def _plain(parts: Iterable[Substitution]) -> str | None:
-    """Return a word of a command; None if only the launch can evaluate it."""
+    """Return a word of a command as plain text, or None if only the launch can evaluate it."""
     texts = [part.text for part in parts if isinstance(part, TextSubstitution)]
     return "".join(texts) if len(texts) == len(list(parts)) else None

@@ -1,4 +1,4 @@
-"""A proxy of a process in a launch for tests (``launch_testing.tools.process``)."""
+"""A proxy for a process of a launch in tests (``launch_testing.tools.process``)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from linkwright.launch.standins.launch_testing_api.records import ActiveIoHandle
 
 
 class Outcome:
-    """The result of a wait, with the output by then.
+    """The result of a wait, with the output up to that time.
 
     Args:
         is_true: whether the wait was successful.
@@ -34,13 +34,13 @@ class Outcome:
 
 
 class ProcessProxy:
-    """A process with its state, output and exit code.
+    """A proxy that provides the state, output and exit code of a process.
 
     Args:
-        process_action: the action that starts it.
+        process_action: the action that starts the process.
         proc_info: the records of starts and exits.
         proc_output: the output of the processes.
-        output_filter: a function to filter the output first.
+        output_filter: a function that filters the output.
 
     Raises:
         TypeError: an argument has another type.
@@ -65,51 +65,54 @@ class ProcessProxy:
 
     @property
     def target_process_action(self) -> ExecuteProcess:
-        """The action that starts it."""
+        """The action that starts the process."""
         return self._process_action
 
     @property
     def stdout(self) -> str:
-        """Its standard output."""
+        """The standard output of the process."""
         return self._text("stdout")
 
     @property
     def stderr(self) -> str:
-        """Its standard error."""
+        """The standard error of the process."""
         return self._text("stderr")
 
     @property
     def output(self) -> str:
-        """Its output to both streams, in order."""
+        """The output of the process to both streams, in order."""
         return self._text(None)
 
     @property
     def running(self) -> bool:
-        """Whether it has started and not ended."""
+        """Whether the process has started and not ended."""
         return isinstance(self._event, events.ProcessStarted)
 
     @property
     def terminated(self) -> bool:
-        """Whether it has ended."""
+        """Whether the process has ended."""
         return isinstance(self._event, events.ProcessExited)
 
     @property
     def exit_code(self) -> int:
-        """Its exit code."""
+        """The exit code of the process."""
         code: int = self._proc_info[self._process_action].returncode
         return code
 
     def wait_for_shutdown(self, timeout: float | None = None) -> bool:
-        """Wait until it has ended, and return whether it did in time (seconds; None to wait without limit)."""
+        """Wait until the process has ended, and return whether it ended in time.
+
+        The timeout is in seconds; None waits without limit.
+        """
         with self._proc_info.proc_event:
             return self._proc_info.proc_event.wait_for(lambda: self.terminated, timeout=timeout)
 
     def wait_for_output(self, condition: Callable[[str], Any] | None = None, timeout: float | None = None) -> Outcome:
-        """Wait for output, and return whether it came in time.
+        """Wait for output of the process, and return whether it arrived in time.
 
         Args:
-            condition: a predicate on its entire output; if omitted, any output suffices.
-            timeout: seconds; None to wait without limit.
+            condition: a predicate on the entire output; if omitted, any output suffices.
+            timeout: the timeout in seconds; None to wait without limit.
         """
         _check_callable(condition, "condition")
         written: str | None = None
@@ -143,14 +146,16 @@ def launch_process(
     proc_output: ActiveIoHandler,
     **kwargs: Any,
 ) -> Iterator[ProcessProxy]:
-    """Start a process in a running launch, and end it afterwards if it is still running.
+    """Start a process in a running launch for the duration of a context.
+
+    It is ended afterwards if it is still running.
 
     Args:
-        launch_service: runs the launch.
-        process_action: the action that starts it.
+        launch_service: the service that runs the launch.
+        process_action: the action that starts the process.
         proc_info: the records of starts and exits.
         proc_output: the output of the processes.
-        kwargs: for `ProcessProxy`.
+        kwargs: passed to `ProcessProxy`.
     """
     _check_type(process_action, ExecuteProcess, "process_action")
     launch_service.include_launch_description(LaunchDescription([process_action]))

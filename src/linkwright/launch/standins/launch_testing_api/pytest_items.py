@@ -1,6 +1,7 @@
-"""The pytest plugin of ``launch_testing``: a marked file of launch tests is one test of pytest.
+"""The pytest plugin of ``launch_testing``.
 
-The mark is one of ``generate_test_description``: ``@pytest.mark.launch_test``, or ``rostest`` of launch_testing_ros.
+A marked file of launch tests is a single test. ``generate_test_description`` has the mark ``@pytest.mark.launch_test``,
+or ``rostest`` of launch_testing_ros.
 """
 
 from __future__ import annotations
@@ -17,17 +18,20 @@ from linkwright.launch.standins.launch_testing_api.test_runs import LoadTestsFro
 
 @pytest.hookspec(firstresult=True)
 def pytest_launch_collect_makemodule(path: Path, parent: pytest.Collector, entrypoint: object) -> object:
-    """Create a collector of the tests in a file with ``generate_test_description``; plugins may override it."""
+    """Create a collector for a file with ``generate_test_description``.
+
+    Plugins may override this hook.
+    """
 
 
 MARKS = ("launch_test", "rostest")
 
 
 class LaunchTestFailure(Exception):
-    """Tests of a launch have failed.
+    """Raised when tests of a launch have failed.
 
     Attributes:
-        message: the message.
+        message: the error message.
         results: launch -> results of its tests.
     """
 
@@ -38,7 +42,7 @@ class LaunchTestFailure(Exception):
 
     @property
     def report(self) -> str:
-        """Return the messages of the failed tests."""
+        """The messages of the failed tests."""
         parts = []
         for result in self.results.values():
             for case, text in (*result.errors, *result.failures):
@@ -68,13 +72,13 @@ class LaunchTestItem(pytest.Item):
         load: Callable[[], list[TestRun]],
         runner_cls: type[LaunchTestRunner] = LaunchTestRunner,
     ) -> LaunchTestItem:
-        """Create the item; pytest's interface."""
+        """Create the item, through the interface that pytest defines."""
         made: LaunchTestItem = super().from_parent(parent, name=name)
         made.load, made.runner_cls = load, runner_cls
         return made
 
     def runtest(self) -> None:
-        """Run it.
+        """Run all tests of the file.
 
         Raises:
             LaunchTestFailure: a test has failed.
@@ -87,13 +91,13 @@ class LaunchTestItem(pytest.Item):
             raise LaunchTestFailure("some test cases have failed", results)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], *args: Any, **kwargs: Any) -> Any:
-        """Return the text of a failure: the tests' messages."""
+        """Return the text of a failure, which consists of the tests' messages."""
         if isinstance(excinfo.value, LaunchTestFailure):
             return excinfo.value.report
         return super().repr_failure(excinfo, *args, **kwargs)
 
     def reportinfo(self) -> tuple[Path, int, str]:
-        """Return its location and name."""
+        """Return the location and name of the item."""
         return self.path, 0, f"launch tests: {self.name}"
 
 
@@ -103,22 +107,22 @@ class LaunchTestModule(pytest.File):
     module: Any
 
     def makeitem(self, *args: Any, **kwargs: Any) -> LaunchTestItem:
-        """Create the test of the file."""
+        """Create the single test of the file."""
         return LaunchTestItem.from_parent(*args, **kwargs)
 
     def collect(self) -> Iterator[LaunchTestItem]:
-        """Yield the one test of the file."""
+        """Yield the single test of the file."""
         name = self.module.__name__
         yield self.makeitem(name=name, parent=self, load=lambda: LoadTestsFromPythonModule(self.module, name=name))
 
 
 def collect_marked(path: Path, parent: pytest.Collector) -> LaunchTestModule | None:
-    """Return the marked launch tests of a file; None if it has none, or cannot be imported."""
+    """Return the marked launch tests of a file, or None if it has none or cannot be imported."""
     usual = pytest.Module.from_parent(parent, path=path)
     try:
         module = usual.obj
     except (usual.CollectError, pytest.skip.Exception):
-        return None  # pytest reports it on collection
+        return None  # pytest reports the failed import on collection
     marks = list(getattr(getattr(module, "generate_test_description", None), "pytestmark", ()))
     if not any(mark.name in MARKS for mark in marks):
         return None

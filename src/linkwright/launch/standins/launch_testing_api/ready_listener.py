@@ -1,4 +1,4 @@
-"""An event handler that reacts to a text of a process (``launch_testing.event_handlers``)."""
+"""An event handler for a text that a process writes (``launch_testing.event_handlers``)."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ class StdoutReadyListener(OnProcessIO):
     """Visits actions when a process writes a text to standard output.
 
     Args:
-        target_action: the action of the process; all by default.
-        ready_txt: the text.
+        target_action: the action of the process; all processes by default.
+        ready_txt: the text to wait for.
         actions: the actions to visit.
     """
 
@@ -26,5 +26,5 @@ class StdoutReadyListener(OnProcessIO):
         super().__init__(target_action=target_action, on_stdout=react)
 
     def describe(self) -> tuple[str, Any]:
-        """Return a description and the actions."""
+        """Return a line for listings, and the actions."""
         return super().describe()[0], self._actions

@@ -1,7 +1,7 @@
-"""Records of the output and exits of processes in a launch, for tests (``launch_testing``'s handlers).
+"""Records of the output and exits of processes in a launch, for tests.
 
-The active handlers are for tests that run during the launch: they support waiting. The plain ones inside them are for
-tests that run after it.
+They are the handlers of ``launch_testing``. The active handlers are for tests that run during the launch, and support
+waiting. Each contains a plain handler, which is for tests that run after the launch.
 """
 
 from __future__ import annotations
@@ -48,18 +48,21 @@ class IoHandler:
         return list(self._by_name)
 
     def __getitem__(self, key: str | ExecuteLocal) -> list[events.ProcessIO]:
-        """Return the output of a process, by its name or action; KeyError if it is not known."""
+        """Return the output of a process, given its name or action.
+
+        An unknown process raises KeyError.
+        """
         return list(self._by_name[key if isinstance(key, str) else name_of(key)])
 
 
 class ProcInfoHandler:
-    """The last event of each process: its start or its exit."""
+    """The last event of each process, which is its start or its exit."""
 
     def __init__(self) -> None:
         self._by_action: dict[Any, events.RunningProcessEvent] = {}
 
     def append(self, process_info: events.RunningProcessEvent) -> None:
-        """Record an event."""
+        """Record an event of a process."""
         self._by_action[process_info.action] = process_info
 
     def __iter__(self) -> Iterator[events.RunningProcessEvent]:
@@ -74,7 +77,10 @@ class ProcInfoHandler:
         return [name_of(action) for action in self._by_action]
 
     def __getitem__(self, key: str | ExecuteLocal) -> Any:
-        """Return the event of a process, by a part of its name or its action; KeyError if it is not known."""
+        """Return the last event of a process, given a part of its name or its action.
+
+        An unknown process raises KeyError.
+        """
         if not isinstance(key, str):
             return self._by_action[key]
         for action, event in self._by_action.items():
@@ -84,10 +90,10 @@ class ProcInfoHandler:
 
 
 class ActiveIoHandler:
-    """The output of processes so far, with waits.
+    """The output of processes so far, with methods that wait for output.
 
     Attributes:
-        io_event: notified on output of a process.
+        io_event: the condition that is notified when a process writes output.
     """
 
     def __init__(self) -> None:
@@ -121,12 +127,15 @@ class ActiveIoHandler:
             return self._io_handler.process_names()
 
     def __getitem__(self, key: str | ExecuteLocal) -> list[events.ProcessIO]:
-        """Return the output of a process, by its name or action; KeyError if it is not known."""
+        """Return the output of a process, given its name or action.
+
+        An unknown process raises KeyError.
+        """
         with self.io_event:
             return self._io_handler[key]
 
     def assertWaitFor(self, *args: Any, **kwargs: Any) -> None:
-        """Raise AssertionError unless `waitFor` finds the output."""
+        """Wait for an output with `waitFor`, and raise AssertionError if it does not arrive in time."""
         if not self.waitFor(*args, **kwargs):
             raise AssertionError("Waiting for output timed out")
 
@@ -142,16 +151,16 @@ class ActiveIoHandler:
         strip_ansi_escape_sequences: bool = True,
         stream: str = "stderr",
     ) -> bool:
-        """Wait for an output, and return whether it came in time.
+        """Wait for an output, and return whether it arrived in time.
 
         Args:
             expected_output: a text, a regular expression, or several of them in order.
             process: an action, or a part of the name of a process; None for all processes.
             cmd_args: arguments of the process, see `resolveProcesses`.
             strict_proc_matching: whether a name must match only one process.
-            output_filter: a function to filter the output first.
-            timeout: seconds; None to wait without limit.
-            strip_ansi_escape_sequences: whether to remove colours first.
+            output_filter: a function that filters the output before the search.
+            timeout: the timeout in seconds; None to wait without limit.
+            strip_ansi_escape_sequences: whether to remove colours before the search.
             stream: ``stdout`` or ``stderr``.
 
         Raises:
@@ -161,7 +170,7 @@ class ActiveIoHandler:
         def is_there() -> bool:
             try:
                 assertInStream(
-                    self._io_handler,  # the lock is held
+                    self._io_handler,  # this thread already holds the lock
                     expected_output,
                     process,
                     cmd_args,
@@ -182,10 +191,10 @@ class ActiveIoHandler:
 
 
 class ActiveProcInfoHandler:
-    """The starts and exits of processes so far, with waits.
+    """The starts and exits of processes so far, with methods that wait for them.
 
     Attributes:
-        proc_event: notified when a process has started or ended.
+        proc_event: the condition that is notified when a process has started or ended.
     """
 
     def __init__(self) -> None:
@@ -193,7 +202,7 @@ class ActiveProcInfoHandler:
         self._proc_info_handler = ProcInfoHandler()
 
     def append(self, process_info: events.RunningProcessEvent) -> None:
-        """Record an event."""
+        """Record an event of a process."""
         with self.proc_event:
             self._proc_info_handler.append(process_info)
             self.proc_event.notify_all()
@@ -213,7 +222,10 @@ class ActiveProcInfoHandler:
             return self._proc_info_handler.process_names()
 
     def __getitem__(self, key: str | ExecuteLocal) -> Any:
-        """Return the event of a process, by a part of its name or its action; KeyError if it is not known."""
+        """Return the last event of a process, given a part of its name or its action.
+
+        An unknown process raises KeyError.
+        """
         with self.proc_event:
             return self._proc_info_handler[key]
 
@@ -224,7 +236,7 @@ class ActiveProcInfoHandler:
         *,
         timeout: float | None = 10,
     ) -> None:
-        """Wait until a process has started; raise AssertionError on a timeout."""
+        """Wait until a process has started, and raise AssertionError on a timeout."""
         self._wait(process, cmd_args, events.RunningProcessEvent, "start", timeout)
 
     def assertWaitForShutdown(
@@ -234,7 +246,7 @@ class ActiveProcInfoHandler:
         *,
         timeout: float | None = 10,
     ) -> None:
-        """Wait until a process has ended; raise AssertionError on a timeout."""
+        """Wait until a process has ended, and raise AssertionError on a timeout."""
         self._wait(process, cmd_args, events.ProcessExited, "finish", timeout)
 
     def _wait(

@@ -1,4 +1,7 @@
-"""Results of tests, and the XML that CI servers read (``launch_testing.test_result`` and ``junitxml``)."""
+"""Test results, and the XML that CI servers read.
+
+They are ``launch_testing.test_result`` and ``junitxml``.
+"""
 
 from __future__ import annotations
 
@@ -13,13 +16,13 @@ Case = unittest.TestCase
 
 class _Run(Protocol):
     def all_cases(self) -> Iterable[Case]:
-        """The tests of a run."""
+        """Return the tests of a run."""
 
 
 class TestResult(unittest.TextTestResult):
-    """Results of tests that ran, with the tests themselves and how long each took."""
+    """The results of tests that ran, with the tests themselves and their durations."""
 
-    __test__ = False  # pytest would collect it as tests
+    __test__ = False  # keeps pytest from collecting the class as a test
 
     def __init__(self, stream: Any = None, descriptions: Any = None, verbosity: Any = None, **kwargs: Any) -> None:
         super().__init__(stream, descriptions, verbosity, **kwargs)
@@ -33,7 +36,7 @@ class TestResult(unittest.TextTestResult):
 
     @property
     def testTimes(self) -> dict[Any, float]:
-        """The duration of each in seconds."""
+        """The duration of each test in seconds."""
         return {case: self._seconds.get(case, 0.0) for case in self._begun}
 
     def startTest(self, test: Case) -> None:
@@ -42,7 +45,7 @@ class TestResult(unittest.TextTestResult):
         super().startTest(test)
 
     def stopTest(self, test: Case) -> None:
-        """Record its duration."""
+        """Record the duration of a test."""
         self._seconds[test] = time.monotonic() - self._begun[test]
         super().stopTest(test)
 
@@ -56,7 +59,7 @@ class TestResult(unittest.TextTestResult):
 
 
 class _NotRun(unittest.TestResult):
-    """Results of tests that did not run."""
+    """The results of tests that did not run."""
 
     def __init__(self, test_run: _Run) -> None:
         super().__init__()
@@ -65,16 +68,16 @@ class _NotRun(unittest.TestResult):
 
     @property
     def testTimes(self) -> dict[Any, float]:
-        """A duration of 0 for each."""
+        """A duration of 0 seconds for each test."""
         return dict.fromkeys(self.testCases, 0)
 
 
 class FailResult(_NotRun):
-    """Results of tests whose launch ended before them: all have failed.
+    """The results of tests whose launch ended before they finished: all of them failed.
 
     Args:
         test_run: the test run.
-        message: the reason.
+        message: the reason for the failure.
     """
 
     def __init__(self, test_run: _Run, message: str) -> None:
@@ -83,12 +86,12 @@ class FailResult(_NotRun):
             self.addFailure(case, (Exception, Exception(message), None))  # type: ignore[arg-type]  # no traceback
 
     def wasSuccessful(self) -> bool:
-        """Return False, even without tests."""
+        """Return False, even if there are no tests."""
         return False
 
 
 class SkipResult(_NotRun):
-    """Results of tests whose launch is skipped.
+    """The results of tests whose launch was skipped.
 
     Args:
         test_run: the test run.
@@ -104,11 +107,11 @@ class SkipResult(_NotRun):
 def unittestResultsToXml(
     *, name: str = "launch_test", test_results: Mapping[Any, Any] | None = None
 ) -> ET.ElementTree[ET.Element]:
-    """Return a document ``testsuites`` for the results of several launches.
+    """Return an XML document ``testsuites`` with the results of several launches.
 
     Args:
         name: the name of the document.
-        test_results: a launch, or its name -> its results.
+        test_results: launch, or its name -> results of its tests.
     """
     results = test_results or {}
     seconds = sum(sum(result.testTimes.values()) for result in results.values())
@@ -123,7 +126,7 @@ def unittestResultsToXml(
 
 
 def unittestResultToXml(name: str, test_result: Any) -> ET.Element:
-    """Return an element ``testsuite`` for the results of a launch."""
+    """Return an XML element ``testsuite`` with the results of a launch."""
     counts = {
         "tests": test_result.testsRun,
         "failures": len(test_result.failures),
@@ -137,7 +140,7 @@ def unittestResultToXml(name: str, test_result: Any) -> ET.Element:
 
 
 def unittestCaseToXml(test_result: Any, test_case: Any) -> ET.Element:
-    """Return an element ``testcase`` for one test."""
+    """Return an XML element ``testcase`` for a single test."""
     method, _, qualifiers = test_case.id().partition(" ")
     owner, _, called = method.rpartition(".")
     attributes = {

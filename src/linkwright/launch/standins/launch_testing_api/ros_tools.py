@@ -31,13 +31,13 @@ class LaunchTestRunner(_LaunchTestRunner):
 
 
 class WaitForTopics:
-    """Waits for a message on each of several topics; also a context manager.
+    """Waits for a message on each of several topics; can be used as a context manager.
 
     Args:
         topic_tuples: names and types of the topics.
-        timeout: seconds.
+        timeout: the timeout in seconds.
         messages_received_buffer_length: the number of messages to keep for each topic.
-        trigger: called after the subscriptions are created.
+        trigger: a function that is called after the subscriptions are created.
         node_namespace: the namespace of the subscribing node.
     """
 
@@ -65,7 +65,10 @@ class WaitForTopics:
         self._thread.start()
 
     def wait(self, *args: Any, **kwargs: Any) -> bool:
-        """Wait, and return whether all topics had a message in time; the arguments are passed to the trigger."""
+        """Wait, and return whether a message arrived on each topic in time.
+
+        The arguments are passed to the trigger.
+        """
         with self._all_there:
             for messages in self._received.values():
                 messages.clear()
@@ -79,21 +82,21 @@ class WaitForTopics:
             return self._all_there.wait_for(lambda: not self.topics_not_received(), timeout=self.timeout)
 
     def shutdown(self) -> None:
-        """Stop listening."""
+        """Stop receiving messages, and destroy the node."""
         self._context.try_shutdown()
         self._thread.join()
         self._node.destroy_node()
 
     def topics_received(self) -> set[str]:
-        """Return the topics that had a message."""
+        """Return the topics on which a message arrived."""
         return {name for name, messages in self._received.items() if messages}
 
     def topics_not_received(self) -> set[str]:
-        """Return the topics that had none."""
+        """Return the topics on which no message arrived."""
         return {name for name, _ in self.topic_tuples} - self.topics_received()
 
     def received_messages(self, topic_name: str) -> list[Any]:
-        """Return the messages of a topic, the latest last.
+        """Return the messages of a topic, oldest first.
 
         Raises:
             KeyError: it is not one of the topics.
@@ -132,7 +135,7 @@ class MessagePump:
 
     Args:
         node: the node.
-        context: its context.
+        context: the rclpy context of the node.
     """
 
     def __init__(self, node: Any, context: Any = None) -> None:
@@ -149,7 +152,7 @@ class MessagePump:
         """Stop the thread.
 
         Raises:
-            Exception: a callback does not end.
+            Exception: a callback does not return.
         """
         self._stopping.set()
         self._thread.join(timeout=_STOP_SECONDS)
@@ -164,14 +167,14 @@ class MessagePump:
 
 
 class DataRepublisher:
-    """Transforms the messages of a topic and publishes them on another topic.
+    """Transforms the messages of a topic, and publishes them on another topic.
 
     Args:
         node: the node that subscribes and publishes.
         listen_topic: the input topic.
         publish_topic: the output topic.
-        msg_type: the type of both.
-        transform_fn: returns the output for a message; None to publish nothing.
+        msg_type: the message type of both topics.
+        transform_fn: returns the output for a message, or None to publish nothing.
     """
 
     def __init__(
@@ -185,7 +188,7 @@ class DataRepublisher:
         self._subscription = node.create_subscription(msg_type, listen_topic, self._handle, _DEPTH)
 
     def shutdown(self) -> None:
-        """Stop."""
+        """Destroy the subscription and the publisher."""
         self._node.destroy_subscription(self._subscription)
         self._node.destroy_publisher(self._publisher)
 
@@ -210,14 +213,16 @@ class DataRepublisher:
 
 
 def get_rmw_output_filter(rmw_implementation: str, filter_type: str) -> list[str]:
-    """Return the lines that an rmw implementation declares as noise in outputs.
+    """Return prefixes or patterns of output lines that are noise.
+
+    An rmw implementation declares them.
 
     Args:
-        rmw_implementation: its package.
+        rmw_implementation: the package of the rmw implementation.
         filter_type: ``prefixes`` or ``patterns``.
 
     Raises:
-        TypeError: there is no such kind.
+        TypeError: there is no such filter type.
     """
     kinds = ["prefixes", "patterns"]
     if filter_type not in kinds:
@@ -237,9 +242,9 @@ def basic_output_filter(
     """Return a function that removes lines from an output.
 
     Args:
-        filtered_prefixes: the beginnings of such lines.
-        filtered_patterns: regular expressions for the beginnings of such lines.
-        filtered_rmw_implementation: an rmw implementation whose lines to remove too, see `get_rmw_output_filter`.
+        filtered_prefixes: the prefixes of lines to remove.
+        filtered_patterns: regular expressions for the beginnings of lines to remove.
+        filtered_rmw_implementation: an rmw implementation whose noise is removed, too, see `get_rmw_output_filter`.
     """
     prefixes = list(text.get_default_filtered_prefixes() if filtered_prefixes is None else filtered_prefixes)
     patterns = list(filtered_patterns or ())

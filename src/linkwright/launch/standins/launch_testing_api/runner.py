@@ -1,7 +1,7 @@
 """Runs the tests of a file with their launches (``launch_testing.test_runner``).
 
-A launch runs in the main thread, because only that one gets signals, and its tests in another thread. The tests of its
-end run in the main thread after it.
+A launch runs in the main thread, because only the main thread receives signals, and its tests run in another thread.
+The post-shutdown tests run in the main thread after the launch.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ from linkwright.launch.standins.launch_testing_api.test_runs import TestRun
 
 
 class _LaunchDiedError(Exception):
-    """The launch ended before its tests."""
+    """Raised when the launch ended before its tests."""
 
 
 class _RunnerWorker:
     """Runs one launch and its tests.
 
     Args:
-        test_run: the tests.
+        test_run: the tests to run.
         test_run_preamble: entities to launch first.
         launch_file_arguments: arguments of the launch, ``name:=value``.
         debug: whether the launch logs details.
@@ -58,7 +58,7 @@ class _RunnerWorker:
         self._proc_output = ActiveIoHandler()
 
     def run(self) -> TestResult:
-        """Launch, and run the tests.
+        """Launch the description, run the tests, and return their results.
 
         Raises:
             _LaunchDiedError: the launch ended before its tests.
@@ -79,7 +79,7 @@ class _RunnerWorker:
         return results
 
     def _bind(self, context: Mapping[str, Any]) -> None:
-        """Pass the tests their arguments and attributes."""
+        """Pass arguments and attributes to the tests."""
         beside: dict[str, Any] = {
             "launch_service": self._launch_service,
             "proc_info": self._proc_info,
@@ -95,7 +95,10 @@ class _RunnerWorker:
         self._test_run.bind(self._test_run.post_shutdown_tests, after, {**context, **after})
 
     def _wrapped(self, description: LaunchDescription) -> LaunchDescription:
-        """Return the description with its arguments and the recorders of its processes."""
+        """Return a description that includes the given one, and records its processes.
+
+        The arguments of the launch are passed to it.
+        """
         info, output = self._proc_info, self._proc_output
 
         def started(event: events.ProcessStarted, _: Any) -> None:
@@ -115,7 +118,7 @@ class _RunnerWorker:
         )
 
     def _run_test(self) -> None:
-        """Run the tests when the launch is ready, and end it."""
+        """Run the tests once the launch is ready, and then end the launch."""
         if not self._processes_launched.wait(self._test_run.timeout):
             print("Timed out waiting for processes to start up")
             self._launch_service.shutdown()
@@ -138,12 +141,12 @@ class _RunnerWorker:
 
 
 class LaunchTestRunner:
-    """Runs launches, each with its tests.
+    """Runs several launches, each with its tests.
 
     Args:
         test_runs: the tests of each launch.
         launch_file_arguments: arguments of the launches, ``name:=value``.
-        debug: whether they log details.
+        debug: whether the launches log details.
     """
 
     def __init__(
@@ -154,11 +157,11 @@ class LaunchTestRunner:
         self._debug = debug
 
     def generate_preamble(self) -> list[Any]:
-        """Return entities to launch first; none, unless a subclass overrides it."""
+        """Return entities to launch first; empty unless a subclass overrides this method."""
         return []
 
     def run(self) -> dict[TestRun, unittest.TestResult]:
-        """Run all launches, and return the results of each; stop if one dies."""
+        """Run all launches, and return the results of each; stop if one ends before its tests."""
         results: dict[TestRun, unittest.TestResult] = {}
         for run in self._test_runs:
             if len(self._test_runs) > 1:
@@ -175,7 +178,10 @@ class LaunchTestRunner:
         return results
 
     def validate(self) -> None:
-        """Raise Exception if ``generate_test_description`` does not accept its arguments."""
+        """Check that ``generate_test_description`` accepts its arguments.
+
+        Raise Exception otherwise.
+        """
         for run in self._test_runs:
             asked = inspect.getfullargspec(inspect.unwrap(run._test_description_function))
             names = [*asked.args, *asked.kwonlyargs]

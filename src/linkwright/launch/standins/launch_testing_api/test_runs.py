@@ -25,11 +25,11 @@ class TestRun:
         name: the name of the tests.
         param_args: the arguments of a parametrized description.
         pre_shutdown_tests: the tests that run during the launch.
-        post_shutdown_tests: the tests that run after its end.
-        timeout: seconds that the launch may take until the tests may start.
+        post_shutdown_tests: the tests that run after the launch has ended.
+        timeout: the maximum time in seconds from the start of the launch until the tests may start.
     """
 
-    __test__ = False  # pytest would collect it as tests
+    __test__ = False  # keeps pytest from collecting the class as a test
 
     def __init__(
         self,
@@ -45,19 +45,19 @@ class TestRun:
         self.post_shutdown_tests = post_shutdown_tests
         self.timeout: float = getattr(test_description_function, TIMEOUT, _READY_SECONDS)
         self._test_description_function = test_description_function
-        self._cases = [*_cases(pre_shutdown_tests), *_cases(post_shutdown_tests)]  # suites drop finished tests
+        self._cases = [*_cases(pre_shutdown_tests), *_cases(post_shutdown_tests)]  # suites drop tests that have run
         if self.param_args:
             for case in self._cases:
                 _rename(case, case._testMethodName + self._shown_arguments())
 
     @property
     def markers(self) -> dict[str, Any]:
-        """The marks of the function that creates the description."""
+        """The marks of the function that creates the launch description."""
         found: dict[str, Any] = getattr(self._test_description_function, MARKERS, {})
         return found
 
     def normalized_test_description(self, *, ready_fn: Callable[[], object]) -> Described:
-        """Return the description, and the context that its function returns for the tests.
+        """Return the launch description, and the context that its function returns for the tests.
 
         Args:
             ready_fn: called when the tests may start.
@@ -77,7 +77,7 @@ class TestRun:
         return description, context
 
     def get_launch_description(self) -> LaunchDescription:
-        """Return the description, for inspection."""
+        """Return the launch description, for inspection."""
         return self.normalized_test_description(ready_fn=lambda: None)[0]
 
     def bind(
@@ -86,11 +86,11 @@ class TestRun:
         injected_attributes: Mapping[str, Any] | None = None,
         injected_args: Mapping[str, Any] | None = None,
     ) -> None:
-        """Pass tests their arguments and attributes.
+        """Pass arguments and attributes to tests.
 
         Args:
-            tests: a suite.
-            injected_attributes: name -> value of attributes of each test.
+            tests: the suite of tests.
+            injected_attributes: name -> value of attributes to set on each test.
             injected_args: name -> value of arguments, for tests and their fixtures that have such an argument.
         """
         cases = list(_cases(tests))
@@ -104,7 +104,7 @@ class TestRun:
                 setattr(case, name, _bound(getattr(case, name), injected_args or {}))
 
     def all_cases(self) -> Iterator[unittest.TestCase]:
-        """Return all tests, including finished ones."""
+        """Yield all tests, including finished ones."""
         return iter(self._cases)
 
     def __str__(self) -> str:
@@ -115,7 +115,9 @@ class TestRun:
 
 
 def LoadTestsFromPythonModule(module: Any, *, name: str = "launch_tests") -> list[TestRun]:
-    """Return the tests of a module with a function ``generate_test_description``, for each launch that it describes.
+    """Return the tests of a module, one `TestRun` for each launch.
+
+    The module has a function ``generate_test_description``.
 
     Args:
         module: the module.
@@ -136,12 +138,15 @@ def LoadTestsFromPythonModule(module: Any, *, name: str = "launch_tests") -> lis
 
 
 class _Loader(unittest.TestLoader):
-    """Loads the tests that run after a launch, or those that run during it."""
+    """Loads either the tests that run during a launch, or those that run after it."""
 
     is_after = False
 
     def loadTestsFromTestCase(self, testCaseClass: type[unittest.TestCase]) -> unittest.TestSuite:
-        """Load the tests of a class; each launch has its own subclass for injected attributes."""
+        """Load the tests of a class as a subclass of it.
+
+        Each launch has a separate subclass, because attributes are injected.
+        """
         if getattr(testCaseClass, AFTER_SHUTDOWN, False) != self.is_after:
             return unittest.TestSuite()
         own = type(testCaseClass.__name__, (testCaseClass,), {"__module__": testCaseClass.__module__})
@@ -153,13 +158,13 @@ class PreShutdownTestLoader(_Loader):
 
 
 class PostShutdownTestLoader(_Loader):
-    """Loads the tests that run after the end of the launch."""
+    """Loads the tests that run after the launch has ended."""
 
     is_after = True
 
 
 def _cases(tests: Iterable[Any]) -> Iterator[Any]:
-    """The tests in suites of suites."""
+    """Yield the tests in nested suites."""
     for test in tests:
         if isinstance(test, Iterable):
             yield from _cases(test)
@@ -173,6 +178,6 @@ def _rename(case: Any, name: str) -> None:
 
 
 def _bound(function: Callable[..., Any], given: Mapping[str, Any]) -> Callable[..., Any]:
-    """Bind the given arguments that a function accepts."""
+    """Return a function with those of the given arguments bound that it accepts."""
     asked = inspect.signature(function).parameters
     return functools.partial(function, **{name: value for name, value in given.items() if name in asked})

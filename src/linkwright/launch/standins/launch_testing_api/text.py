@@ -19,7 +19,7 @@ Match = Callable[..., "Range | None"]
 
 
 def normalize_lineseps(lines: str) -> str:
-    r"""Return a text with ``\n`` line ends, even if it comes from a terminal."""
+    r"""Return a text with ``\n`` line ends, even if it was written to a terminal."""
     return lines.replace(os.linesep, "\n").replace("\r\n", "\n")
 
 
@@ -28,10 +28,10 @@ def build_text_match(expected_text: Any, *, strict: bool = False) -> Match:
 
     Args:
         expected_text: a text, a regular expression, or several of them in order.
-        strict: whether the text must match completely; for several, whether they must be adjacent.
+        strict: whether the text must match completely; for several expectations, whether they must be adjacent.
 
     Raises:
-        ValueError: it has another type.
+        ValueError: the expectation has another type.
     """
 
     def find(text: str, start: int = 0) -> Range | None:
@@ -55,11 +55,11 @@ def build_line_match(expected_lines: Any, *, strict: bool = False) -> Match:
     """Return a function that finds an expectation in lines.
 
     Args:
-        expected_lines: a part of a line, a regular expression for the beginning of a line, or several in order.
-        strict: whether every line must match; for several, whether they must be adjacent.
+        expected_lines: a part of a line, a regular expression for the beginning of a line, or several of them in order.
+        strict: whether every line must match; for several expectations, whether they must be adjacent.
 
     Raises:
-        ValueError: it has another type.
+        ValueError: the expectation has another type.
     """
 
     def fits(line: str) -> bool:
@@ -81,7 +81,10 @@ def build_line_match(expected_lines: Any, *, strict: bool = False) -> Match:
 
 
 def _in_order(matches: Sequence[Match], *, strict: bool) -> Match:
-    """Return a function that finds expectations in order, adjacent or with other text between them."""
+    """Return a function that finds expectations in order.
+
+    They are adjacent if `strict` is set; otherwise, other text may be between them.
+    """
 
     def find(written: Any, start: int = 0) -> Range | None:
         begin, end = None, start
@@ -107,15 +110,15 @@ def expect_output(
     """Return whether a text, or lines, contain an expectation.
 
     Args:
-        text: the output as text; or `lines`.
-        lines: the output in lines.
-        expected_text: see `build_text_match`; or `expected_lines`.
+        text: the output as text; alternatively, `lines`.
+        lines: the output as lines.
+        expected_text: see `build_text_match`; alternatively, `expected_lines`.
         expected_lines: see `build_line_match`.
-        strip_ansi_escape_sequences: whether to remove colours first.
+        strip_ansi_escape_sequences: whether to remove colours before the comparison.
         strict: see `build_text_match`.
 
     Raises:
-        ValueError: both of a pair are given, or neither.
+        ValueError: both arguments of a pair of alternatives are given, or neither.
     """
     if (text is None) == (lines is None):
         raise ValueError("Either lines or text, but not both, must be specified")
@@ -130,7 +133,7 @@ def expect_output(
 
 
 def expected_output_from_file(path: str, encoding: str | None = None) -> list[Any]:
-    """Return the expectations in a file: the lines of ``PATH.txt``, or the regular expressions of ``PATH.regex``.
+    """Return the lines of ``PATH.txt``, or the regular expressions in ``PATH.regex``.
 
     Raises:
         RuntimeError: neither file exists.
@@ -158,8 +161,8 @@ def basic_output_filter(
     """Return a function that removes lines from an output.
 
     Args:
-        filtered_prefixes: the beginnings of such lines; those of `get_default_filtered_prefixes` by default.
-        filtered_patterns: regular expressions for the beginnings of such lines.
+        filtered_prefixes: the prefixes of lines to remove; by default the result of `get_default_filtered_prefixes`.
+        filtered_patterns: regular expressions for the beginnings of lines to remove.
     """
     prefixes = tuple(get_default_filtered_prefixes() if filtered_prefixes is None else filtered_prefixes)
     patterns = [re.compile(filtered_pattern) for filtered_pattern in filtered_patterns or ()]
