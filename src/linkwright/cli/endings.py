@@ -71,8 +71,7 @@ def open_closed_streams() -> None:
     """Open null devices for standard streams that were closed when the process was started.
 
     Otherwise files that are opened later would get their file descriptors. Reading returns nothing, writing to the
-    output
-    fails, and messages are discarded.
+    output fails, and messages are discarded.
     """
     if sys.stdin is None:
         sys.stdin = _open_as(0, os.O_RDONLY, "r")

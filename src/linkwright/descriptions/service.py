@@ -451,8 +451,7 @@ def _as_it_stands(
     """Return the description that urdfdom reads from an unexpanded document.
 
     `is_reported` is set if the remarks already report that. Xacro might then add elements that the file lacks, such as
-    the
-    colours of an included file.
+    the colours of an included file.
     """
     reading = read(document)
     diagnostics = tuple(

@@ -51,12 +51,12 @@ class Node(NodeParameters, NodeQueries):
     """A node of a graph.
 
     Its dispatcher runs its callbacks. In a graph on an event loop this is the loop, which runs one callback after
-    another,
-    logs the exception of a callback, and continues. All parts of a node may be created and used from any thread.
+    another, logs the exception of a callback, and continues. All parts of a node may be created and used from any
+    thread.
 
     rclpy's nodes derive from this class, and users' nodes from those. Names here are therefore those of rclpy, or
-    mangled;
-    everything else is provided by the `handle`. No code here reads `graph`, which a user's node may define itself.
+    mangled; everything else is provided by the `handle`. No code here reads `graph`, which a user's node may define
+    itself.
 
     Args:
         graph: the graph that the node belongs to.
@@ -272,8 +272,7 @@ class Node(NodeParameters, NodeQueries):
             msg_type: the message class, or the name of the type, whose class is then created on first use.
             topic: relative, absolute or private (``~/``) name.
             callback: called with each message, which it must not change, and with a `MessageInfo` if it takes two
-                arguments.
-                It may be a coroutine function.
+                arguments. It may be a coroutine function.
             qos_profile: the QoS that it requests; a number is a depth.
             callback_group: decides which entities may run at the same time.
             event_callbacks: callbacks for QoS events.
@@ -526,10 +525,8 @@ class Graph(LocalGraph):
     """A ROS-like computation graph.
 
     A graph that is created inside a running event loop lets that loop run the callbacks of its nodes. Created
-    elsewhere, or
-    with `threads`, its nodes have no dispatcher at first; the executors of `linkwright.graph.executors` can serve as
-    one.
-    The arguments are those of `LocalGraph`.
+    elsewhere, or with `threads`, its nodes have no dispatcher at first; the executors of `linkwright.graph.executors`
+    can serve as one. The arguments are those of `LocalGraph`.
     """
 
     create_node = _made_by(Node)

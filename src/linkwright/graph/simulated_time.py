@@ -21,8 +21,7 @@ class SimulatedTime:
     """Sets a node's clock from ``/clock`` while ``use_sim_time`` is true (rclpy ``TimeSource``).
 
     The clock is set in the thread in which a message of ``/clock`` arrives, not in a callback of the node, so time
-    passes
-    while the node's own thread sleeps.
+    passes while the node's own thread sleeps.
 
     Args:
         handle: the handle of the node, which subscribes.

@@ -69,9 +69,8 @@ class LaunchLog:
     """The log of one launch.
 
     On the screen, lines of the launcher and of nodes are written to stderr, and the output of processes to the stream
-    that
-    they use. In the folder of the launch, below `log_base`, ``launch.log`` contains all lines of the launcher and all
-    output directed to the log; processes with their own log have a file next to it. The variables
+    that they use. In the folder of the launch, below `log_base`, ``launch.log`` contains all lines of the launcher and
+    all output directed to the log; processes with their own log have a file next to it. The variables
     ``OVERRIDE_LAUNCH_SCREEN_FORMAT`` and ``OVERRIDE_LAUNCH_LOG_FORMAT`` change the format of lines, as in ROS.
 
     Args:

@@ -1,8 +1,7 @@
 """Live reload: a saved model file is expanded again and passed to the nodes that show it.
 
 The nodes keep running, so joint positions and the camera are kept. If a model cannot be read, the last valid one
-remains
-in use, and the errors are shown until the file is fixed.
+remains in use, and the errors are shown until the file is fixed.
 """
 
 from __future__ import annotations
@@ -219,10 +218,8 @@ class FileWatch:
     """Calls back on the event loop when files in some folders change.
 
     Folders are watched rather than files, because editors save by writing a new file and renaming it. Files behind
-    links
-    (``colcon build --symlink-install``) are also watched at their real location. For a folder that does not exist, such
-    as
-    one that a build is about to create again, the nearest existing parent folder is watched.
+    links (``colcon build --symlink-install``) are also watched at their real location. For a folder that does not
+    exist, such as one that a build is about to create again, the nearest existing parent folder is watched.
 
     Args:
         on_change: called with the paths that changed.

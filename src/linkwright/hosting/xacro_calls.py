@@ -122,8 +122,7 @@ class Descriptions:
 
         Raises:
             DescriptionError: the errors of the file, or of an included file, with the findings of its valid parts; for
-                a
-                world, only errors that did not exist at the start.
+                a world, only errors that did not exist at the start.
         """
         if isinstance(call, WorldCall):
             return self._read_world(call)

@@ -2,8 +2,7 @@
 
 It follows compressed_depth_image_transport. The header consists of an unused int32 and two float32. Depths that were
 float32 are quantised to integers that grow as the distance decreases: ``depth = first / (number - second)``, and 0
-where
-there is no depth. An RVL stream is preceded by its columns and rows, each a uint32.
+where there is no depth. An RVL stream is preceded by its columns and rows, each a uint32.
 
 RVL is the lossless compression of depth images by Wilson ("Fast Lossless Depth Image Compression", ISS 2017). A stream
 is a sequence of numbers in groups of four bits: three bits of the number, the lowest first, and one bit that is set if

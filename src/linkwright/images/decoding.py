@@ -347,8 +347,7 @@ def from_nv(luma: Pixels, chroma: Pixels, layout: str) -> Pixels:
     Args:
         luma: shape (height, width).
         chroma: for ``nv21``, shape (height / 2, width), alternating red and blue for each 2 x 2 pixels; for ``nv24``,
-            shape
-            (height, 2 width), alternating blue and red for each pixel.
+            shape (height, 2 width), alternating blue and red for each pixel.
         layout: ``nv21`` or ``nv24``.
     """
     height, width = luma.shape

@@ -114,8 +114,7 @@ def unpacked(message: Any) -> RawImage:
     """Return the image of a message of the transport `compressed`.
 
     The encoding is that of the file. For pixels with 16 bits (depths), the format of the message names the encoding; a
-    JPEG
-    contains only their upper 8 bits, as in compressed_image_transport.
+    JPEG contains only their upper 8 bits, as in compressed_image_transport.
 
     Args:
         message: sensor_msgs/msg/CompressedImage, whose format begins with the encoding of the raw image.

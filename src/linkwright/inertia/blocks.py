@@ -16,8 +16,7 @@ def inertial_parts(properties: MassProperties) -> tuple[tuple[str, Attributes], 
     """Return the children of ``<inertial>`` with their attributes, in the order in which they are written.
 
     The axes are those of the link. Numbers have six significant digits: the rounding is far smaller than the
-    uncertainty of
-    the shape, and keeps a valid tensor valid.
+    uncertainty of the shape, and keeps a valid tensor valid.
     """
     inertial = to_inertial(properties)
     xyz = inertial.origin.xyz

@@ -20,8 +20,7 @@ class Comparison:
         mass_ratio: the mass in the file divided by the computed mass; None if one of them is not positive.
         center_distance: the distance between the centres of mass in m.
         moment_ratios: the principal moments per kg in the file divided by the computed ones, the smallest first; None
-            if
-            they cannot be divided.
+            if they cannot be divided.
         problems: the reasons why the file's values cannot be those of a body.
     """
 

@@ -57,8 +57,7 @@ def estimate(
     """Estimate the mass properties of a link whose shapes are solid with a uniform density.
 
     Overlapping parts of shapes count twice. The mass is the requested mass, else the mass from the requested density,
-    else
-    the mass of the link in the file, else the mass from `DEFAULT_DENSITY`.
+    else the mass of the link in the file, else the mass from `DEFAULT_DENSITY`.
 
     Args:
         link: the link.

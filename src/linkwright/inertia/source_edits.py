@@ -38,8 +38,7 @@ def edits_for(link: Link, properties: MassProperties) -> tuple[SourceText, list[
     """Return the edits of source texts that give a link these mass properties.
 
     An existing ``<inertial>`` keeps its formatting and comments; only values are replaced and missing parts added. A
-    new
-    ``<inertial>`` becomes the first child of the link.
+    new ``<inertial>`` becomes the first child of the link.
 
     Args:
         link: the link, read from a file, possibly through xacro.

@@ -94,8 +94,7 @@ class Inference:
         held: the joints, other than those of wheels, that hold their position and can be moved, in file order.
         fixed_base: whether the robot's root is fixed to the world.
         ground: the z of the ground, which is that of the lowest point, in the root's frame, in m, with all joints at
-            zero.
-            A robot is placed in a world at minus this height.
+            zero. A robot is placed in a world at minus this height.
         masses: link -> its mass in kg, own or inferred.
     """
 

@@ -99,8 +99,7 @@ def round_shape(
     """Return the shape of a body that rolls about an axis, and the names of unreadable meshes.
 
     It is the largest shape that is round about the axis, with collisions preferred to visuals. A body whose other
-    shapes
-    extend beyond it does not roll.
+    shapes extend beyond it does not roll.
 
     Args:
         members: the links of the body, with their poses in a common frame.

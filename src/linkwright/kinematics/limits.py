@@ -27,8 +27,7 @@ class SpeedLimiter:
         speed: the current velocity.
 
     Source: gz-math's SpeedLimiter, and the RateLimiter of diff_drive_controller and of control_toolbox, which differ
-    only
-    in the arguments.
+    only in the arguments.
     """
 
     def __init__(

@@ -33,8 +33,7 @@ class PlanarPose:
         """Move on an arc: forward and to the left in m while rotating by an angle in rad.
 
         The path is a circular arc, without integration error. Source: diff_drive_controller, which does so only for
-        forward
-        motion.
+        forward motion.
         """
         if abs(turn) < _STRAIGHT:
             self.advance(forward, sideways, turn)

@@ -299,13 +299,10 @@ class KinematicTree:
     """The kinematic tree of a robot: link poses for joint positions.
 
     Revolute, continuous and prismatic joints move. A mimic joint follows the joint at the end of its chain of mimics;
-    if
-    that chain ends in a cycle or at a joint that does not exist, the joint moves independently. A planar joint does not
-    move, because robot_state_publisher's kdl_parser treats it as fixed. A floating joint remains at its origin, because
-    its
-    transform is published by other nodes. An axis need not have unit length; nothing moves about a zero axis. Limits
-    are
-    not applied. Links that are not connected to the root are left out.
+    if that chain ends in a cycle or at a joint that does not exist, the joint moves independently. A planar joint does
+    not move, because robot_state_publisher's kdl_parser treats it as fixed. A floating joint remains at its origin,
+    because its transform is published by other nodes. An axis need not have unit length; nothing moves about a zero
+    axis. Limits are not applied. Links that are not connected to the root are left out.
 
     Attributes:
         joint_names: the joints that have a position, in the order of the file; mimic joints have none.

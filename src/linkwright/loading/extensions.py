@@ -58,8 +58,7 @@ def extensions(group: str) -> Mapping[str, EntryPoint]:
     """Return the entry points of a group by name: Linkwright's first, then those of other packages, sorted by name.
 
     The order in which a package declares them is not reliable: some build tools sort entry points in the metadata,
-    others do
-    not. If two packages declare the same name, the first one found is used; Linkwright's cannot be replaced.
+    others do not. If two packages declare the same name, the first one found is used; Linkwright's cannot be replaced.
 
     A group is empty if no installed package declares it: linkwright-core alone has few.
 

@@ -31,8 +31,7 @@ class FramePoses:
         """Return the pose of a frame in another one at a time, or the latest known.
 
         It never waits: if a transform is a little late, the previous one is used. If there is no transform at all, it
-        logs a
-        throttled warning and returns None.
+        logs a throttled warning and returns None.
         """
         if target == source:
             return IDENTITY

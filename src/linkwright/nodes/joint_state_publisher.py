@@ -91,8 +91,7 @@ class JointPositions:
         """Change to another layout.
 
         Joints that are free in both layouts and have left their start position keep their state, moved into the new
-        limits.
-        All others start at zero.
+        limits. All others start at zero.
         """
         before, rows_before = self._free_states(), self._rows
         zeros_before = {joint.name: joint.zero for joint in self.layout.free}
@@ -208,8 +207,7 @@ class JointStatePublisher(SingleNode):
     Raises:
         LinkwrightError: the node cannot start: invalid parameters (NODE201), joints that mimic each other in a cycle
             (NODE202), a file that cannot be read (NODE203, or the file's error), too many arguments (NODE204), a file
-            that
-            is SDF or COLLADA (NODE205).
+            that is SDF or COLLADA (NODE205).
     """
 
     DEFAULT_NAME = "joint_state_publisher"

@@ -184,8 +184,7 @@ class JointStatePublisherGui(JointStatePublisher):
     """The running joint_state_publisher_gui node, whose default name is ``joint_state_publisher`` as in ROS.
 
     A moved slider is published immediately; moves in the same iteration of the event loop share one message. Messages
-    on
-    the topics of ``source_list`` move the sliders.
+    on the topics of ``source_list`` move the sliders.
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:

@@ -52,8 +52,7 @@ class JointMotion:
 
     Args:
         joints: the joints. Revolute, continuous and prismatic joints move, all others stay at their origin. Axes need
-            not
-            be of unit length (KDL normalises them); a joint with a zero axis does not move.
+            not be of unit length (KDL normalises them); a joint with a zero axis does not move.
     """
 
     def __init__(self, joints: Sequence[Joint]) -> None:
@@ -147,8 +146,8 @@ class RobotTransforms:
         """Return the conversion to transforms for messages with these joint names.
 
         Names that do not belong to moving joints are ignored. A joint that mimics a joint in the message follows it,
-        unless
-        the message contains a position for the joint itself; a joint that mimics such a joint in turn does not follow.
+        unless the message contains a position for the joint itself; a joint that mimics such a joint in turn does not
+        follow.
         """
         key = tuple(names)
         recipe = self._recipes.get(key)
@@ -199,8 +198,7 @@ class Throttle:
     Times are in nanoseconds; 0 is never. A message is published when its stamp is at least an interval after the last
     publication of the message's joint that has waited longest. Messages that repeat the previous positions, such as the
     periodic messages of joint_state_publisher, must keep that interval from all messages; messages with new positions
-    only
-    from other messages with new positions. So a repeated message does not hold up a move that follows it.
+    only from other messages with new positions. So a repeated message does not hold up a move that follows it.
 
     Args:
         interval_ns: the minimum time between two messages about the same joints.

@@ -94,8 +94,7 @@ def log_unknown(node: Node) -> None:
     """Log the given parameters that the node does not have; called once all are declared.
 
     Names that look misspelt cause a warning. Parameters for all nodes of a launch (``/**``) reach nodes that do not
-    have
-    them, so other names are only logged as information.
+    have them, so other names are only logged as information.
     """
     known = node.parameter_names()
     strange = [name for name in node.undeclared_overrides() if not name.startswith(_EVERYWHERE)]

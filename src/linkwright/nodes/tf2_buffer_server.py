@@ -36,8 +36,7 @@ class Tf2BufferServer(SingleNode):
     """The running buffer_server node, which serves the action ``tf2_buffer_server`` (LookupTransform of tf2_msgs).
 
     A goal whose transform is not available yet is retried until its timeout. Errors are part of the result, so every
-    goal
-    that is not canceled succeeds, as in tf2_ros.
+    goal that is not canceled succeeds, as in tf2_ros.
     """
 
     DEFAULT_NAME = "tf_buffer"

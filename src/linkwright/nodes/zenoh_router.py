@@ -13,8 +13,7 @@ class ZenohRouter(SingleNode):
     """A running Zenoh router, at tcp/localhost:7447 unless the settings give another address.
 
     The settings are those of rmw_zenohd, ``ZENOH_ROUTER_CONFIG_URI`` and ``ZENOH_CONFIG_OVERRIDE``. Unlike rmw_zenohd,
-    the
-    router accepts only connections from this machine by default. Its node is hidden.
+    the router accepts only connections from this machine by default. Its node is hidden.
 
     Args:
         graph: the graph to which the node is added.

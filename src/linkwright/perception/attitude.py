@@ -135,8 +135,7 @@ class MadgwickFilter:
         """Return the gradient of half the squared difference between a world direction in the body frame and `seen`.
 
         A small change of the orientation q by dq changes the predicted reading, q* d q, by dq* d q + q* d dq; its
-        product with
-        the difference e is that of dq with -2 d q e.
+        product with the difference e is that of dq with -2 d q e.
         """
         x, y, z = rotate(quaternion_inverse(self.orientation), direction)
         difference = (x - seen[0], y - seen[1], z - seen[2], 0.0)

@@ -38,8 +38,7 @@ def end_at_once() -> None:
 
     It is for the time when there is nothing to clean up. It also takes effect if the process was started with SIGINT
     ignored: scripts do so for every program that they start with ``&``, and then use ``kill -INT`` to end it. ROS's
-    programs
-    obey that as well, because rclpy and rclcpp always install handlers.
+    programs obey that as well, because rclpy and rclcpp always install handlers.
     """
     if _signal.getsignal(_signal.SIGINT) in (_signal.default_int_handler, _signal.SIG_IGN):
         _signal.signal(_signal.SIGINT, _end)

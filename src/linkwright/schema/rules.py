@@ -95,8 +95,7 @@ class ElementRule:
         text: the rule of the text inside, for an element whose value is its text.
         choice: whether the first child selects one of several kinds, and its object is this element's object.
         make: creates the object, which must not be false, from keyword arguments: the fields of attributes and
-            children;
-            None if they are fields of the parent's object, as for ``<mass value="1"/>``.
+            children; None if they are fields of the parent's object, as for ``<mass value="1"/>``.
         located: whether `make` takes the element, as ``element``.
         field: the field of the parent's object; the tag's name by default.
         get: returns the value to write from the parent's object, if that is not simply its field.

@@ -50,8 +50,7 @@ class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its ba
         """Copy the package's files and return the exit status.
 
         An ``ament_cmake`` package is found by the same files as any other package: its marker in the resource index,
-        and the
-        scripts that put its prefix into the environment.
+        and the scripts that put its prefix into the environment.
         """
         args, package = self.context.args, self.context.pkg
         folder = Path(args.path)

@@ -19,8 +19,7 @@ class VelocityInput:
     """The velocity commands of a ``geometry_msgs/msg/TwistStamped`` topic, which expire.
 
     The age of a command counts from the time in its header. If the header has no time, or one in the future, it counts
-    from
-    the update that first uses the command, so every command expires. A command that is not finite stops the drive.
+    from the update that first uses the command, so every command expires. A command that is not finite stops the drive.
 
     Args:
         node: the controller's node.
@@ -31,10 +30,8 @@ class VelocityInput:
         qos: the QoS of the subscriptions.
 
     Source: diff_drive_controller of ros2_controllers, with two differences: a header with a time in the future does not
-    hold
-    forever, and commands with headers are accepted even if commands without headers are requested, since Jazzy accepts
-    no
-    others.
+    hold forever, and commands with headers are accepted even if commands without headers are requested, since Jazzy
+    accepts no others.
     """
 
     def __init__(

@@ -105,8 +105,7 @@ def hardware_of(robot: Robot) -> tuple[list[HardwareDescription], list[Diagnosti
     """Return the hardware of a robot, and findings about its elements.
 
     Invalid elements are left out: hardware without a name or with an unknown type, a joint that the robot does not
-    have, a
-    value that is not a number.
+    have, a value that is not a number.
     """
     reader = _Reader(robot)
     found = [reader.hardware(extension) for extension in robot.extensions if extension.tag == "ros2_control"]

@@ -3,8 +3,7 @@
 Source: joint_limits of ros2_control (``enforce_command_limits`` of the controller manager; which limits apply where).
 The limits are those of the joint's ``<limit>`` and ``<safety_controller>``, narrowed by ``min`` and ``max`` of its
 command interfaces; ``<limits enable="false"/>`` disables them. A velocity or effort limit of 0 means no limit. One
-thing
-differs: starting from the last command, a position command never moves faster than the velocity limit.
+thing differs: starting from the last command, a position command never moves faster than the velocity limit.
 """
 
 from __future__ import annotations

@@ -2,8 +2,7 @@
 
 Source: controller_manager of ros2_control from Jazzy on (topics, names, units: execution times in microseconds,
 periodicity in Hz). One thing differs: nothing is measured without a subscription; measuring starts within a second
-after
-the first subscription.
+after the first subscription.
 """
 
 from __future__ import annotations

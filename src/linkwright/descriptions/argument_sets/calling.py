@@ -73,8 +73,7 @@ def argument_sets(path: str | Path, finder: PackageFinder | None = None) -> tupl
     """Return the sets of values that launch files, tests and build files give to a description's arguments.
 
     The files are read in the description's package and in neighbouring packages that depend on it, and if these give
-    none,
-    in the other neighbouring packages. Nothing is run.
+    none, in the other neighbouring packages. Nothing is run.
 
     Args:
         path: the file of the description.

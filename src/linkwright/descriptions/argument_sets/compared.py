@@ -20,8 +20,7 @@ def compared_values(documents: Iterable[Document]) -> tuple[ArgumentSet, ...]:
     """Return the values with which conditions compare arguments, each as a set that may not occur.
 
     An argument is also recognised by the names of properties that contain it: ``<xacro:property name="side"
-    value="$(arg
-    side)"/>``. Macro parameters are not followed.
+    value="$(arg side)"/>``. Macro parameters are not followed.
 
     Args:
         documents: the files of a description, as written.

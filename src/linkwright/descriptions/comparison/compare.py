@@ -113,10 +113,9 @@ def compare(old: Side, new: Side) -> Comparison:
     """Return the differences between two descriptions.
 
     Links and joints are matched by name, and recognised under a new name if everything else is equal. Poses are
-    compared
-    as poses, not as text; the tolerances are in `linkwright.descriptions.comparison.facts`. Elements outside the robot
-    model (``<gazebo>``, ``<ros2_control>``, sensors) are compared as XML, ignoring blanks, comments and the order of
-    attributes.
+    compared as poses, not as text; the tolerances are in `linkwright.descriptions.comparison.facts`. Elements outside
+    the robot model (``<gazebo>``, ``<ros2_control>``, sensors) are compared as XML, ignoring blanks, comments and the
+    order of attributes.
     """
     return _Comparer(old, new).run()
 

@@ -28,10 +28,8 @@ def match(
     """Match the links and joints of two robots, from the root down.
 
     Links or joints with the same name match. A joint that is only in the old robot was renamed if a joint that is only
-    in
-    the new robot has the same parent, an equal child and equal properties. A link was renamed if an equal link has the
-    same
-    parent joint.
+    in the new robot has the same parent, an equal child and equal properties. A link was renamed if an equal link has
+    the same parent joint.
 
     Args:
         old: the old robot.

@@ -25,8 +25,7 @@ class Workspace:
     """The files that edits of a description may write: the files of its workspace that are not installed.
 
     The workspace is the largest of these folders around the main file: the folder of its package, of its git
-    repository,
-    and the folder whose ``src`` contains it.
+    repository, and the folder whose ``src`` contains it.
 
     Args:
         main: the file that was opened.

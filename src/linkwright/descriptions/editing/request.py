@@ -24,8 +24,7 @@ class EditRequest:
         name: the name of the joint, or of the link that contains any other part.
         index: which of the link's visuals or collisions, from 0.
         xyz: the requested position in metres, in the frame of the parent link or of the link; for `axis` the axis, in
-            the
-            joint's frame. None to keep the current one.
+            the joint's frame. None to keep the current one.
         rpy: the requested roll, pitch and yaw in rad; None to keep the current ones.
         together: whether other parts that depend on the same text may change, too.
     """

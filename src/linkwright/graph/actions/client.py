@@ -168,8 +168,7 @@ class ActionClient(ActionEndpoint):
         Args:
             goal: the goal message.
             feedback_callback: called with each feedback message for this goal; its ``feedback`` field holds the
-                action's
-                own feedback.
+                action's own feedback.
             goal_uuid: the goal's ID; a random one by default.
 
         Returns:

@@ -55,8 +55,8 @@ class ActionServer(ActionEndpoint):
     """Serves an action (rclpy ``ActionServer``).
 
     The server consists of three services and two topics below ``NAME/_action/``. Callbacks may be coroutine functions.
-    An
-    execute callback that is not a coroutine function runs in the dispatcher's thread and blocks other callbacks there.
+    An execute callback that is not a coroutine function runs in the dispatcher's thread and blocks other callbacks
+    there.
 
     Args:
         node: the node that owns the server.
@@ -247,8 +247,7 @@ class ActionServer(ActionEndpoint):
         """Return the preliminary return code of a cancel request, and the goals that it selects.
 
         As in rcl_action's ``process_cancel_request``: an ID selects that goal, a stamp selects all goals accepted up to
-        then,
-        an ID and a stamp select both, and a request with neither selects all goals.
+        then, an ID and a stamp select both, and a request with neither selects all goals.
         """
         uuid = bytes(info.goal_id.uuid)
         has_id = any(uuid)

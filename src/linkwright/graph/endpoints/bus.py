@@ -101,10 +101,9 @@ class Transport(Protocol):
     def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for lost publishers of other processes.
 
-        It may be called from any thread.
-        A publisher is lost when its process was killed or crashed, or when it has been silent for longer than it
-        promised.
-        This method is first called when a subscription asks for such notifications (`Subscription.watch_lost`).
+        It may be called from any thread. A publisher is lost when its process was killed or crashed, or when it has
+        been silent for longer than it promised. This method is first called when a subscription asks for such
+        notifications (`Subscription.watch_lost`).
         """
 
     def close(self) -> None:

@@ -21,15 +21,13 @@ class Commander:
     """Tracks the publisher of the current command, and revokes it when the publisher is lost.
 
     A publisher that leaves the graph has ended in an orderly way, and its last command stays in force. A publisher that
-    is
-    lost was killed, has crashed or is out of reach, so it cannot replace its command. Its loss does not affect the
+    is lost was killed, has crashed or is out of reach, so it cannot replace its command. Its loss does not affect the
     commands of other publishers.
 
     Args:
         revoke: called with the lost publisher, after its last command, in the same way as the subscription's callback.
         drivers: receives each command that arrives through `tracking_callback`, to warn of several publishers that send
-            commands
-            at the same time; None for no warning.
+            commands at the same time; None for no warning.
     """
 
     def __init__(self, revoke: Callable[[EndpointInfo], object], drivers: DriverWatch | None = None) -> None:

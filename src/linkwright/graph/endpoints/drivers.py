@@ -25,8 +25,7 @@ class Dispute:
     A publisher takes over when its command differs from the previous one, which another publisher sent. It is a dispute
     when several publishers take over repeatedly for a while. These are not disputes: a handover, a stop that another
     publisher sends at the end, and the second for which nav2's velocity smoother continues when another server begins
-    to
-    drive.
+    to drive.
 
     Args:
         lasting_s: how long the parties must contradict each other, in seconds.
@@ -103,8 +102,7 @@ class DriverWatch:
     """Warns when several nodes command the same robot at the same time, and names them.
 
     It warns once for each change of these nodes. Each message takes effect as it arrives, as in ROS and Gazebo: a
-    dispute
-    is reported and not prevented.
+    dispute is reported and not prevented.
 
     Args:
         logger: logs the warnings.

@@ -30,10 +30,8 @@ class Publisher(TopicEndpoint[M]):
     ``Node.create_publisher`` creates it.
 
     Inside the process a message is not copied: once it is published, neither the publisher nor its receivers may change
-    it.
-    For nodes that may change their messages (`NodeHandle.copies_messages`) a message is serialized when it is
-    published,
-    and deserialized for each subscription.
+    it. For nodes that may change their messages (`NodeHandle.copies_messages`) a message is serialized when it is
+    published, and deserialized for each subscription.
     """
 
     kind = EndpointKind.PUBLISHER
@@ -191,13 +189,11 @@ class Publisher(TopicEndpoint[M]):
         The transport calls this, and `set_outside` soon after.
 
         Under ROS 2 a subscription that has been discovered receives every message of a publisher, from the first. Here
-        the
-        transport creates the writer in its own thread, a moment after the publisher.
+        the transport creates the writer in its own thread, a moment after the publisher.
 
         Args:
             sent: waits until `set_outside` was called, for at most the given seconds (None for no limit); returns
-                whether
-                it was.
+                whether it was.
         """
         with self._lock:
             if self._kept is None and self.outside is None:

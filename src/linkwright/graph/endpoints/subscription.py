@@ -164,8 +164,8 @@ class Subscription(TopicEndpoint[M], Entity):
     def watch_lost(self, lost: Callable[[EndpointInfo], object]) -> None:
         """Register a callback for lost publishers of other processes.
 
-        It runs in the same way as the subscription's callback.
-        A publisher is lost when its process was killed, crashed or is out of reach. Its messages are delivered first.
+        It runs in the same way as the subscription's callback. A publisher is lost when its process was killed, crashed
+        or is out of reach. Its messages are delivered first.
         """
         self._on_lost = lost
         self.node.graph.watch_lost()
@@ -183,8 +183,7 @@ class Subscription(TopicEndpoint[M], Entity):
         """From now on, pass all queued messages to the callback, one after the other, in a single call.
 
         This is for short callbacks with many messages, such as those of tf. With one message per call, a loop that has
-        other
-        work would lag behind by the length of the queue.
+        other work would lag behind by the length of the queue.
         """
         self._together = True
 

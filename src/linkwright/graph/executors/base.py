@@ -66,8 +66,7 @@ class Executor:
     """Runs the callbacks of nodes; the base class of all executors, including users' own.
 
     A user's executor defines `spin_once`, and gets its work from `wait_for_ready_callbacks`. As in rclpy the class is
-    not
-    abstract, and may be instantiated.
+    not abstract, and may be instantiated.
 
     Args:
         context: spinning ends when this context is no longer ok; None for an executor without a context.
@@ -231,8 +230,7 @@ class Executor:
 
         Returns:
             A task to be called, whose ``exception()`` returns the error afterwards; its entity (None for a task that
-            was
-            created by `create_task`); and its node.
+            was created by `create_task`); and its node.
 
         Raises:
             TimeoutException: no work was ready in time.
@@ -333,8 +331,7 @@ class Executor:
         """Move a client's answer behind the work that is ready, and work that follows from it.
 
         Returns whether the answer was postponed. rclpy runs tasks and messages first: when a client learns that its
-        goal was
-        accepted, it already has the feedback, if the goal was executed in the meantime.
+        goal was accepted, it already has the feedback, if the goal was executed in the meantime.
         """
         if answer.postponed >= _POSTPONED_AT_MOST or not self._work.has_ready():
             answer.postponed = 0
@@ -476,10 +473,8 @@ class SpinningExecutor(Executor):
         Runs callbacks in a pool of threads, as far as their groups allow (rclpy ``MultiThreadedExecutor``).
 
         The spinning thread hands out work to at most as many threads as the pool has; other work waits with its
-        entities,
-        according to their QoS. `spin_once` does not wait until the work that it handed out ends. If a callback raises
-        an
-        exception, ``spin`` raises it in the spinning thread.
+        entities, according to their QoS. `spin_once` does not wait until the work that it handed out ends. If a
+        callback raises an exception, ``spin`` raises it in the spinning thread.
 
         Args:
             num_threads: the number of threads; None for the number of processors of the process.

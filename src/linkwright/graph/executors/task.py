@@ -26,8 +26,7 @@ class Task(Future[T]):
     """The future result of a callable or a coroutine.
 
     Calling the task runs the callable, or the coroutine up to its next ``await``. A task with an executor asks it for
-    the
-    next step as soon as the awaited future is done.
+    the next step as soon as the awaited future is done.
 
     Args:
         handler: a callable, a coroutine function or a coroutine.

@@ -46,8 +46,7 @@ class WorkQueue:
     A thread that takes from it also triggers the alarms that are due.
 
     Adding to it takes no lock while no thread waits, so passing a message to the own thread costs almost nothing.
-    Waiting
-    holds no lock either: Ctrl-C may raise KeyboardInterrupt at any point of the wait, and would leave a
+    Waiting holds no lock either: Ctrl-C may raise KeyboardInterrupt at any point of the wait, and would leave a
     ``threading.Condition`` with a lock that its thread does not hold (RuntimeError: cannot release un-acquired lock).
     """
 

@@ -53,8 +53,7 @@ class TrafficWindow:
 
         The bandwidth is averaged from the first message until now, as ``ros2 topic bw`` does, and so decreases when the
         topic falls silent. The rate is averaged from the first message to the last one, until the silence is longer
-        than
-        twice the mean interval.
+        than twice the mean interval.
         """
         messages = self._messages
         if self._longest_ns is not None:

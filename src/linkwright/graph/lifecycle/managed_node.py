@@ -61,8 +61,7 @@ class LifecycleNodeMixin(ManagedEntity):
 
     The callbacks ``on_configure``, ``on_activate``, ``on_deactivate``, ``on_cleanup``, ``on_shutdown`` and ``on_error``
     receive the state in which the transition starts, and return a `TransitionCallbackReturn`. Unless overridden, they
-    call
-    the managed entities in turn.
+    call the managed entities in turn.
 
     Args:
         enable_communication_interface: whether other nodes can control the node through services, and see its

@@ -96,8 +96,7 @@ def print_to_console(record: LogRecord) -> None:
 
     Records are coloured on terminals. RCUTILS_COLORIZED_OUTPUT (0 or 1) overrides this; if it is not set, NO_COLOR
     turns colours off. Each record is flushed immediately, regardless of RCUTILS_LOGGING_BUFFERED_STREAM, so that none
-    is
-    lost if the process dies. A stream without a reader is ignored.
+    is lost if the process dies. A stream without a reader is ignored.
     """
     stream: TextIO | None = sys.stdout if os.environ.get("RCUTILS_LOGGING_USE_STDOUT") == "1" else sys.stderr
     if stream is None:  # the program has no console

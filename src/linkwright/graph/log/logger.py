@@ -37,8 +37,7 @@ class LogLevels:
     """The levels of the loggers of a graph.
 
     A logger that has no level itself inherits the level of its nearest ancestor: ``robot`` for ``robot.arm``. The root
-    of
-    this tree is the default level.
+    of this tree is the default level.
 
     Attributes:
         revision: changes with every change of a level.
@@ -109,8 +108,7 @@ class Logger:
 
     The methods ``debug`` to ``fatal`` and `log` accept the filters ``once=True``, ``skip_first=True`` and
     ``throttle_duration_sec=SECONDS``; the latter may be combined with ``throttle_time_source_type=CLOCK``. A filter
-    applies
-    to the place in the code that logs. The methods return whether the record was logged.
+    applies to the place in the code that logs. The methods return whether the record was logged.
 
     Args:
         name: the name in its records.

@@ -178,10 +178,8 @@ class LoopDispatcher:
 
     Entities take turns: an entity that has more calls after its turn moves to the end of the queue, so that a flood of
     messages on one topic does not starve the others. In each iteration of the loop the dispatcher runs ready entities
-    for
-    a moment, and then lets the loop serve sockets and timers. Work that becomes ready while a callback runs is run
-    after
-    it, never inside it. Callbacks that are coroutines run as tasks of the loop, which end with their node.
+    for a moment, and then lets the loop serve sockets and timers. Work that becomes ready while a callback runs is run
+    after it, never inside it. Callbacks that are coroutines run as tasks of the loop, which end with their node.
     """
 
     def __init__(self, timebase: Timebase, loop: asyncio.AbstractEventLoop) -> None:

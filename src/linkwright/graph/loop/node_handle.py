@@ -26,8 +26,7 @@ class CallbackGroup:
     """Decides which of its entities may run; a base class for users' own groups.
 
     An executor calls `can_execute`, then `beginning_execution`, which may still refuse, and finally `ending_execution`.
-    It
-    asks again when a callback has ended.
+    It asks again when a callback has ended.
 
     As in rclpy the class is not abstract: programs may instantiate it, and methods that are not overridden raise an
     error.
@@ -179,8 +178,7 @@ class Dispatcher(AlarmSetter, Protocol):
 
         An entity announces itself when its queue was empty before, and again from within `Entity.take` while more calls
         remain, so nothing accumulates here during a flood of messages. An entity that has another ``dispatcher`` by the
-        time of
-        its turn is skipped.
+        time of its turn is skipped.
         """
 
 
@@ -264,8 +262,7 @@ class NodeHandle(Handle):
         timebase: the time of the graph.
         default_callback_group: the group of entities that are in no other group.
         intake: called with each subscription of the node and each message that arrives for it, in any thread. The
-            message
-            is queued for the callback only if it returns True. None queues all messages.
+            message is queued for the callback only if it returns True. None queues all messages.
         strict_callback_groups: whether responses to its requests wait for the callback group of the client.
     """
 

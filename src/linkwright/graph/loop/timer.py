@@ -45,8 +45,7 @@ class Timer(Entity):
     """Calls back at a fixed period, counted from its start: a late call does not shift the next one.
 
     As in rcl, calls that were missed entirely are skipped. The period is measured on the timer's clock, which may be a
-    ROS
-    clock that follows simulated time.
+    ROS clock that follows simulated time.
 
     Args:
         node: the node that owns the timer.
@@ -262,8 +261,7 @@ class Rate:
     """Lets a loop run at a fixed rate: each `sleep` ends with the next tick of a timer.
 
     The timer's callbacks must be run by another thread than the sleeping one; a coroutine calls `wait`. A late tick
-    does
-    not shift the ticks after it.
+    does not shift the ticks after it.
 
     Args:
         timer: the timer that ticks; the rate replaces its callback.

@@ -31,8 +31,7 @@ class Expression:
 
     Args:
         text: the expression, in the syntax of the library ``regex``: that of Python's `re`, including everything that
-            it
-            has in common with ECMAScript.
+            it has in common with ECMAScript.
 
     Raises:
         ExpressionError: the text is not a valid expression.

@@ -328,9 +328,8 @@ _MIN, _MAX = -(2**63), 2**63 - 1
 def scalar_value(text: str, *, plain: bool) -> Any:
     """Return the value of a YAML scalar by the rules of rcl_yaml_param_parser.
 
-    The value is a bool, int, float or str.
-    Booleans are those of YAML 1.1, including ``y`` and ``n``. Numbers are texts that C's ``strtol`` (any base) or
-    ``strtod`` reads entirely. Everything else, including quoted numbers, is a string.
+    The value is a bool, int, float or str. Booleans are those of YAML 1.1, including ``y`` and ``n``. Numbers are texts
+    that C's ``strtol`` (any base) or ``strtod`` reads entirely. Everything else, including quoted numbers, is a string.
 
     Args:
         text: the scalar.

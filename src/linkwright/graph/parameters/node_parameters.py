@@ -50,8 +50,7 @@ class NodeParameters:
         Args:
             name: the parameter's name.
             value: the default, whose type every later value must have; or a ``Parameter.Type`` for a parameter that has
-                no
-                value at first.
+                no value at first.
             descriptor: the description of the parameter; its name and type are filled in.
             ignore_override: whether to ignore the override.
 
@@ -366,8 +365,7 @@ class ParameterServices:
     """A node's six parameter services: ``~/describe_parameters`` and so on.
 
     Their types are created with the first request. Responses are those of rclpy: if one of several requested names is
-    not
-    declared, the response is empty.
+    not declared, the response is empty.
 
     Args:
         node: the node whose parameters the services access.

@@ -20,8 +20,7 @@ class ParameterRules:
     """Parameter values by node name pattern.
 
     A pattern is a node's full name, in which ``*`` matches one part and ``**`` any number of parts. As in rcl, patterns
-    are
-    ordered by their first appearance, and if two patterns match a node, the later one wins.
+    are ordered by their first appearance, and if two patterns match a node, the later one wins.
 
     Attributes:
         files: the paths of the files that they were read from.

@@ -329,8 +329,7 @@ class ParameterStore:
         """Set all parameters or none.
 
         If `descriptors` is given, the parameters are being declared. Parameters that are set to no value are
-        undeclared, unless
-        `keep_unset` is true.
+        undeclared, unless `keep_unset` is true.
         """
         applied = self._descriptors if descriptors is None else descriptors
         for parameter in parameters:

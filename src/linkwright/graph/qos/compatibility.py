@@ -73,8 +73,7 @@ def incompatible_policies(offered: QoSProfile, requested: QoSProfile) -> list[Qo
     The result is empty if they are compatible.
 
     A reliable subscription needs a reliable publisher, a transient local subscription needs a transient local
-    publisher,
-    a subscription with a deadline needs a publisher that offers at most that deadline, and so on.
+    publisher, a subscription with a deadline needs a publisher that offers at most that deadline, and so on.
     """
     policies = []
     if requested.reliability is ReliabilityPolicy.RELIABLE and offered.reliability is ReliabilityPolicy.BEST_EFFORT:

@@ -117,8 +117,7 @@ class QoSProfile:
 
     Args:
         depth: how many messages may wait for a callback, and how many a transient local publisher keeps for late
-            joiners.
-            It has no effect with KEEP_ALL.
+            joiners. It has no effect with KEEP_ALL.
         reliability: RELIABLE or BEST_EFFORT.
         durability: TRANSIENT_LOCAL or VOLATILE.
         history: KEEP_LAST or KEEP_ALL.

@@ -30,8 +30,8 @@ class Exchange:
     """Carries messages out of the simulation's thread, and commands into it.
 
     Messages are collected and delivered in batches: to the event loop of the graph if the simulation has its own
-    thread,
-    otherwise directly. Commands come from any thread, and the simulation executes them between two chunks of time.
+    thread, otherwise directly. Commands come from any thread, and the simulation executes them between two chunks of
+    time.
 
     Attributes:
         come: set while commands are queued.

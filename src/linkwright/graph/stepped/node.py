@@ -181,10 +181,8 @@ class SteppedNode:
         """Subscribe to a topic.
 
         The arguments are those of `publisher`. For commands that hold until the next one, ``commander`` is an object
-        returned
-        by the method of that name. If a message contains NaN or an infinite number, which would make the world
-        unstable,
-        ``rest`` is called instead of the callback, and a warning is logged.
+        returned by the method of that name. If a message contains NaN or an infinite number, which would make the world
+        unstable, ``rest`` is called instead of the callback, and a warning is logged.
         """
         self._subscribe_to(msg_type, [topic], self._received_by(topic, callback, rest, commander), qos, commander)
 

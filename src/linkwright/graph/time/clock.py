@@ -42,8 +42,7 @@ class AlarmSetter(Protocol):
         """Schedule a call for a steady time of the graph, in nanoseconds; callable from any thread.
 
         The call is never made before this method returns. The callback marks entities as ready: it is short, and never
-        a
-        user's code.
+        a user's code.
         """
 
 
@@ -356,8 +355,7 @@ class Clock:
 
         Returns:
             Whether the time was reached. False if the sleep ended early, because of the context or because the clock
-            switched
-            to simulated time or back.
+            switched to simulated time or back.
 
         Raises:
             ValueError: the point in time belongs to another type of clock.
@@ -427,10 +425,8 @@ class ROSClock(Clock):
     """ROS time, which is the system's time until a simulation takes over (rclpy ``ROSClock``).
 
     While simulated time is active (`ros_time_is_active`), only `set_ros_time_override` moves the clock, forward or
-    back.
-    Timers keep the rest of their period when the clock switches to simulated time or back, and restart their period
-    when it
-    jumps back (rcl ``rcl_timer``).
+    back. Timers keep the rest of their period when the clock switches to simulated time or back, and restart their
+    period when it jumps back (rcl ``rcl_timer``).
     """
 
     def __init__(self, *, clock_type: ClockType = ClockType.ROS_TIME, timebase: Timebase | None = None) -> None:

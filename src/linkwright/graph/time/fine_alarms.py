@@ -93,8 +93,7 @@ class FineAlarms:
     Args:
         set_timer: passes the setting to the kernel.
         setting: the timer's setting in monotonic time: the seconds and nanoseconds of its period, which is 0 for none,
-            and
-            of its next expiry.
+            and of its next expiry.
     """
 
     def __init__(self, set_timer: Callable[[], int], setting: Array[c_long]) -> None:

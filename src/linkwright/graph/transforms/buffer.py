@@ -107,8 +107,7 @@ class TransformBuffer:
     """Keeps the latest transform of each frame, as a display needs it.
 
     As in tf2 a frame has one parent, and the transform received last applies, regardless of its sender. A transform
-    with
-    another parent therefore moves the frame there. Unlike tf2 there is no history: stamps are ignored.
+    with another parent therefore moves the frame there. Unlike tf2 there is no history: stamps are ignored.
 
     Args:
         on_problem: called once, with tf2's words, for each kind of bad transform of each frame.
@@ -131,8 +130,7 @@ class TransformBuffer:
         """Store the transforms of a message.
 
         Transforms with an empty frame name, with equal parent and child frames, with NaN, or with a quaternion that is
-        not of
-        unit length are ignored, as in tf2. A leading slash of a name is dropped.
+        not of unit length are ignored, as in tf2. A leading slash of a name is dropped.
 
         Args:
             message: the transforms.

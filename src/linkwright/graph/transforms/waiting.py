@@ -27,8 +27,7 @@ class Buffer(BufferCore):
     Args:
         cache_time: how long transforms are kept; 10 seconds by default.
         node: if given, the node offers the service ``tf2_frames``, which reports all frames; the buffer is cleared when
-            the
-            node's clock jumps back; and the node's logger reports refused transforms.
+            the node's clock jumps back; and the node's logger reports refused transforms.
     """
 
     def __init__(self, cache_time: Any = None, node: Any = None) -> None:

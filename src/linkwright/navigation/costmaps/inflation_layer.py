@@ -26,8 +26,7 @@ class Inflation:
         inflation_radius: the distance up to which cells have a cost, in metres.
         cost_scaling_factor: the rate of the decay, per metre.
         inflate_unknown: whether unknown cells get all costs; otherwise they get only costs at which the robot would
-            touch an
-            obstacle.
+            touch an obstacle.
         inflate_around_unknown: whether unknown cells are inflated like obstacles.
     """
 

@@ -2,8 +2,7 @@
 
 The state of 15 numbers consists of position (m) and roll, pitch, yaw (rad) in the world, and of linear velocity (m/s),
 angular velocity (rad/s) and linear acceleration (m/s2) in the body. Acceleration and angular velocity are constant
-between
-measurements. Source: T. Moore and D. Stouch, "A Generalized Extended Kalman Filter Implementation for the Robot
+between measurements. Source: T. Moore and D. Stouch, "A Generalized Extended Kalman Filter Implementation for the Robot
 Operating System", 2014.
 """
 

@@ -92,8 +92,7 @@ class PoseReader:
 
         Returns:
             The reading without values that are not finite; None for the first pose of a differential sensor, and for a
-            pose
-            without any finite value.
+            pose without any finite value.
         """
         turn = rotation_matrix(sensor[3:])
         return self._read(pose, covariance, sensor, turn, time_ns)

@@ -14,8 +14,7 @@ class FollowedPath:
     """A path, and the robot's progress on it.
 
     The robot is searched for only within a limited distance ahead of its last position, so a path that crosses itself
-    is
-    followed in order.
+    is followed in order.
 
     Args:
         poses: of shape (poses, 3): x, y (metres) and yaw (radians); at least two.

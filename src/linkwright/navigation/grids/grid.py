@@ -21,8 +21,7 @@ class Grid:
 
     Args:
         cells: the values, of shape (rows, columns): ``cells[row, column]``, rows along y. Their type and meaning depend
-            on
-            the use (int8 for nav_msgs/OccupancyGrid, uint8 for costs).
+            on the use (int8 for nav_msgs/OccupancyGrid, uint8 for costs).
         resolution: the side of a cell, in metres.
         x: the x coordinate of the outer corner of cell (0, 0) in the frame of the grid, in metres.
         y: the y coordinate of that corner, in metres.

@@ -170,8 +170,7 @@ def _bins(particles: Poses) -> tuple[NDArray[np.int64], int]:
     """Return the bin of each particle as a number, and the difference between neighbouring bins along x.
 
     The number changes by the number of bins in a full turn per step along y, and by 1 along yaw, wrapping after a full
-    turn. A
-    border of empty bins surrounds all others.
+    turn. A border of empty bins surrounds all others.
     """
     bins: NDArray[np.int64] = np.floor(particles / _BIN).astype(np.int64)
     bins[:, :2] -= bins[:, :2].min(axis=0) - 1

@@ -47,8 +47,7 @@ def read_image(path: Path) -> MapImage:
 
     Raises:
         LinkwrightError: NAV203, the file does not exist, is not an image, or is broken; NAV204, the file is not PGM,
-            and
-            Pillow, which reads other formats, is not installed.
+            and Pillow, which reads other formats, is not installed.
     """
     try:
         data = read_file(path, _LARGEST_FILE)

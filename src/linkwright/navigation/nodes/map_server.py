@@ -1,8 +1,7 @@
 """nav2's map_server: publishes a map loaded from files, and returns it by a service.
 
 One difference from nav2's Humble: without ``yaml_filename`` the node can still be configured (as in Jazzy), and serves
-a
-map once one is loaded.
+a map once one is loaded.
 """
 
 from __future__ import annotations

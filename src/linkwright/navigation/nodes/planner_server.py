@@ -2,8 +2,7 @@
 
 Parameters, topics, texts and results are those of nav2, Humble and Jazzy. All types of planners are accepted, but one
 method plans for all of them (`linkwright.navigation.planning.planner`); a line is logged if the type has another
-method.
-A deliberate difference: a goal in an obstacle is refused however large the tolerance is.
+method. A deliberate difference: a goal in an obstacle is refused however large the tolerance is.
 """
 
 from __future__ import annotations

@@ -130,8 +130,7 @@ def _equations(
 
     Returns:
         The matrix, of shape (3, 3); the right-hand side, of shape (3,); the share of the points that were used; and
-        their
-        error in metres.
+        their error in metres.
     """
     points = transform_points(pose, scan.points)
     distances, _, places, normals, flatness = reference.nearest(points)

@@ -79,8 +79,7 @@ class Reference:
 
         Returns:
             Distances (n,), indices (n,), positions (n, 2), normals (n, 2) towards the viewpoint, and the straightness
-            of the
-            wall (n,), 0 to 1.
+            of the wall (n,), 0 to 1.
         """
         distances, indices = self._tree.query(points)
         return distances, indices, self.points[indices], self._normals[indices], self._flatness[indices]

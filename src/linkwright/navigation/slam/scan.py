@@ -48,8 +48,7 @@ def planar_scan(
         limits: the minimum and maximum range that the laser measures, in metres.
         cut_off: the mapper's minimum and maximum range, in metres.
         laser: the rotation matrix, of shape (3, 3), and position, of shape (3,), of the laser in the frame of the base;
-            it
-            may be mounted upside down.
+            it may be mounted upside down.
         stamp_ns: the time of the measurement, in nanoseconds.
     """
     with np.errstate(invalid="ignore"):

@@ -93,8 +93,7 @@ def managed(
     """Return the actions that start servers and their lifecycle manager.
 
     Servers that Linkwright lacks are started, too, so that the launch reports them as skipped; the manager does not
-    wait
-    for them.
+    wait for them.
 
     Args:
         context: a context with the launch configurations of `ARGUMENTS` and ``params_file``.

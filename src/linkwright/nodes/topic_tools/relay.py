@@ -147,8 +147,7 @@ class Delay(_InputToOutput):
 
     Raises:
         LinkwrightError: the parameter ``input_topic`` is missing (NODE431), a delay is negative (NODE433), or an
-            argument
-            is invalid (NODE432).
+            argument is invalid (NODE432).
     """
 
     DEFAULT_NAME = "delay"

@@ -150,8 +150,8 @@ class AskModels(PageMessage):
 class SimulationStatus(ServerMessage):
     """The state of the simulation; `present` is false if there is none.
 
-    `drivable` is true if a topic of velocities has a subscriber.
-    `time` is simulated time; it and the real-time factor are None until the simulation publishes them.
+    `drivable` is true if a topic of velocities has a subscriber. `time` is simulated time; it and the real-time factor
+    are None until the simulation publishes them.
     """
 
     present: bool

@@ -2,9 +2,8 @@
 
 Sources: image_transport 3.1 (ROS 2 Humble) and later, compressed_image_transport, compressed_depth_image_transport. The
 transport of the input is the first argument or the parameter ``in_transport``, by default raw. That of the output is
-the
-second argument or ``out_transport``, by default all transports. The topics are ``in`` and ``out`` with the name of the
-transport appended. Remappings of either form apply: ``in:=/camera/image_raw``, as in Jazzy, and
+the second argument or ``out_transport``, by default all transports. The topics are ``in`` and ``out`` with the name of
+the transport appended. Remappings of either form apply: ``in:=/camera/image_raw``, as in Jazzy, and
 ``in/compressed:=...``, as in Humble.
 """
 

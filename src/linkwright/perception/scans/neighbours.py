@@ -64,8 +64,7 @@ class SpeckleFilter(ScanFilter):
     """``LaserScanSpeckleFilter``: removes isolated points nearer than ``max_range``.
 
     With ``filter_type`` 0, the ranges of ``filter_window`` consecutive rays must be similar for the points to be kept.
-    With
-    1, that many of the surrounding points must be near.
+    With 1, that many of the surrounding points must be near.
     """
 
     filter_type: int = 0

@@ -37,10 +37,8 @@ class TeleopTwistKeyboard(SingleNode):
     """The running node.
 
     Parameters: ``stamped`` (by default, the type that the subscriptions expect), ``frame_id``, ``speed`` (m/s),
-    ``turn``
-    (rad/s), ``repeat_rate`` (messages per second while nothing is pressed; 0 for none), ``key_timeout`` (s without a
-    key
-    after which the robot stops; 0 for never).
+    ``turn`` (rad/s), ``repeat_rate`` (messages per second while nothing is pressed; 0 for none), ``key_timeout`` (s
+    without a key after which the robot stops; 0 for never).
 
     Raises:
         LinkwrightError: NODE901, there is no terminal; NODE902, a parameter is negative or not a number.

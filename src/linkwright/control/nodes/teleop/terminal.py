@@ -17,8 +17,7 @@ class KeyTerminal:
     """Reads keys from a terminal while it is open.
 
     Keys are not echoed. Ctrl-C still sends a signal. Keys that would suspend or abort the program (Ctrl-Z and the like)
-    are
-    treated as ordinary keys, because a suspended program cannot stop a robot.
+    are treated as ordinary keys, because a suspended program cannot stop a robot.
 
     Args:
         descriptor: the terminal's file descriptor.

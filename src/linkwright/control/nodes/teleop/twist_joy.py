@@ -1,9 +1,8 @@
 """teleop_node of teleop_twist_joy, which drives a robot by joystick while a button is held.
 
 Parameters and defaults are those of the ROS node. Two things differ on purpose: unless ``publish_stamped_twist`` is
-set,
-the node publishes the type that the topic's subscriptions expect; and when the last publisher of ``joy`` is gone, it
-stops the robot.
+set, the node publishes the type that the topic's subscriptions expect; and when the last publisher of ``joy`` is gone,
+it stops the robot.
 """
 
 from __future__ import annotations

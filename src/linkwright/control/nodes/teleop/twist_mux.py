@@ -1,10 +1,9 @@
 """twist_mux, which forwards the velocity topic with the highest priority to ``cmd_vel_out``.
 
 Parameters, rules and diagnostics are those of the ROS node. A topic is active until its ``timeout`` has passed since
-its
-last message. A lock that is on, or that has been silent for its ``timeout``, blocks all topics of lower priority. Two
-things differ on purpose: a topic without a timeout blocks others only after its first message, and a stop is sent when
-the publisher of the last velocity is lost.
+its last message. A lock that is on, or that has been silent for its ``timeout``, blocks all topics of lower priority.
+Two things differ on purpose: a topic without a timeout blocks others only after its first message, and a stop is sent
+when the publisher of the last velocity is lost.
 """
 
 from __future__ import annotations

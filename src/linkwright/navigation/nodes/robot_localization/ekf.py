@@ -39,8 +39,7 @@ class EkfNode(SingleNode):
 
     Raises:
         LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201) or the wrong number of values (NODE441),
-            or
-            the frames are not different (NODE442).
+            or the frames are not different (NODE442).
     """
 
     DEFAULT_NAME: ClassVar[str] = "ekf_filter_node"
