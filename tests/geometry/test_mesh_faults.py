@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.geometry.mesh_files import BadMeshError, beside
+from linkwright.geometry.mesh_files import BadMeshError, file_resolver
 from linkwright.geometry.mesh_parts import read_parts
 from linkwright.geometry.meshes import read_mesh
 
@@ -161,7 +161,7 @@ def test_a_broken_file_is_refused_in_its_own_words(name: str, tmp_path: Path) ->
     with pytest.raises(LinkwrightError) as read:
         read_mesh(path)
     with pytest.raises(BadMeshError) as exported:
-        read_parts(path, resolver=beside(str(path)))
+        read_parts(path, resolver=file_resolver(str(path)))
     assert expected in read.value.diagnostics[0].message
     assert str(exported.value.why) in read.value.diagnostics[0].message
 
@@ -174,4 +174,4 @@ def test_the_files_that_were_broken_are_whole_otherwise(name: str, data: bytes |
     path = tmp_path / name
     path.write_bytes(data if isinstance(data, bytes) else data.encode())
     assert len(read_mesh(path).faces) == 1
-    assert len(read_parts(path, resolver=beside(str(path)))) == 1
+    assert len(read_parts(path, resolver=file_resolver(str(path)))) == 1

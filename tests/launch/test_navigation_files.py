@@ -14,7 +14,7 @@ from launch_ros.actions import Node
 
 from linkwright.graph import Graph
 from linkwright.launch.frontend.include import IncludeLaunchDescription
-from linkwright.launch.ros.left_out import drop_left_out
+from linkwright.launch.ros.left_out import remove_skipped_nodes
 from linkwright.messages import get_message, get_service
 from linkwright.navigation.substitutes.servers import Server
 from linkwright.nodes import EXECUTABLES, NodeOptions
@@ -249,6 +249,6 @@ def test_no_composed_manager_waits_for_it_either() -> None:
     parameter = get_message("rcl_interfaces/msg/Parameter")(name="node_names")
     parameter.value.string_array_value = ["bt_navigator", "docking_server"]
     request.parameters = [parameter]
-    drop_left_out(context, request)
+    remove_skipped_nodes(context, request)
     assert list(request.parameters[0].value.string_array_value) == ["bt_navigator"]
     assert len(messages) == 1

@@ -98,7 +98,7 @@ class BagWriter:
         if 0 < max_size < _SMALLEST_SPLITS[storage]:
             raise _too_small(max_size, _SMALLEST_SPLITS[storage])
         self._part: Part | None = self._first_part()
-        unfinished.begun(self)
+        unfinished.register_unfinished(self)
 
     @property
     def topics(self) -> Collection[str]:
@@ -215,7 +215,7 @@ class BagWriter:
             except _REFUSALS as error:
                 raise self._ended(error) from error
             self._part = None
-            unfinished.finished(self)
+            unfinished.unregister_finished(self)
 
     def finish(self) -> None:
         """`close` from another thread than the one that writes, before the process is ended."""
@@ -275,7 +275,7 @@ class BagWriter:
 
     def _ended(self, error: Exception) -> LinkwrightError:
         """The error when the disk refuses something; nothing more is written then."""
-        unfinished.finished(self)
+        unfinished.unregister_finished(self)
         part, self._part = self._part, None
         with contextlib.suppress(*_REFUSALS):  # the disk refuses its buffer again
             if part is not None:

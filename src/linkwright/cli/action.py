@@ -127,7 +127,7 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
 
         client = ActionClient(session.node, kind, name)
         print("Waiting for an action server to become available...")
-        if not await session.until(client.server_is_ready, arguments.timeout):
+        if not await session.wait_until(client.server_is_ready, arguments.timeout):
             raise LinkwrightError(
                 Diagnostic(
                     "CLI430",
@@ -142,13 +142,13 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
             print(f"Feedback:\n    {to_yaml(message.feedback)}")
 
         sent = client.send_goal_async(goal, session.guarded(feedback) if arguments.feedback else None)
-        handle = await session.answer(sent)
+        handle = await session.wait_for_result(sent)
         if handle is None or not handle.accepted:
             print("Goal was rejected.")
             return 1
         print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
         try:
-            result = await session.answer(handle.get_result_async())
+            result = await session.wait_for_result(handle.get_result_async())
         except asyncio.CancelledError:
             await _cancel(session, handle)
             raise
@@ -163,7 +163,7 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
 
 async def _cancel(session: Session, handle: Any) -> None:
     print("Canceling goal...")
-    response = await session.answer(handle.cancel_goal_async(), _LONGEST_CANCEL)
+    response = await session.wait_for_result(handle.cancel_goal_async(), _LONGEST_CANCEL)
     if response is None:
         print("The server does not respond; the goal may still be active")
     elif not response.goals_canceling:

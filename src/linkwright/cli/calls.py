@@ -45,10 +45,10 @@ async def call(
 
     client = session.node.create_client(get_service(service_type), service_name)
     try:
-        is_ready = await session.until(client.service_is_ready, APPEARS_WITHIN)
+        is_ready = await session.wait_until(client.service_is_ready, APPEARS_WITHIN)
         if not is_ready and longer > 0:
             print(f"waiting for service '{service_name}' to become available...", file=sys.stderr, flush=True)
-            is_ready = await session.until(client.service_is_ready, longer)
+            is_ready = await session.wait_until(client.service_is_ready, longer)
         if not is_ready:
             raise NoAnswerError(
                 Diagnostic(
@@ -62,7 +62,7 @@ async def call(
                 )
             )
         future = client.call_async(request)
-        response = await session.answer(future, timeout)
+        response = await session.wait_for_result(future, timeout)
         if response is None:
             raise NoAnswerError(
                 Diagnostic(
@@ -100,7 +100,7 @@ async def find_node(session: Session, name: str, *, hidden: bool = False, timeou
         LinkwrightError: CLI423, there is no such node.
     """
     full = absolute_or_given(name)
-    if not await session.until(lambda: full in node_names(session, hidden=hidden), timeout):
+    if not await session.wait_until(lambda: full in node_names(session, hidden=hidden), timeout):
         known = node_names(session, hidden=hidden)
         nothing = (
             phrase("running nodes: {known}", known=joined(dict.fromkeys(known)))

@@ -197,7 +197,7 @@ async def find_container(session: Session, name: str, timeout: float = _APPEARS_
         LinkwrightError: CLI432, there is no container with that name.
     """
     full = absolute_or_given(name)
-    if not await session.until(lambda: full in containers(session), timeout):
+    if not await session.wait_until(lambda: full in containers(session), timeout):
         known = containers(session)
         nothing = phrase("running nodes: {known}", known=joined(known)) if known else phrase("no container is running")
         raise unknown_name_error(

@@ -59,7 +59,7 @@ def run_info(arguments: argparse.Namespace) -> int:
     hidden = arguments.include_hidden
 
     async def job(session: Session) -> int:
-        await session.until(lambda: full in node_names(session, hidden=hidden), _APPEARS_WITHIN)
+        await session.wait_until(lambda: full in node_names(session, hidden=hidden), _APPEARS_WITHIN)
         names = node_names(session, hidden=hidden)
         count = names.count(full)
         if not count:

@@ -135,10 +135,10 @@ def run_call(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         client = session.node.create_client(kind, name)
-        if not await session.until(client.service_is_ready, _AT_ONCE):
+        if not await session.wait_until(client.service_is_ready, _AT_ONCE):
             _check_type(session, name, kind.TYPE_NAME)
             print("waiting for service to become available...")
-            if not await session.until(client.service_is_ready, arguments.timeout):
+            if not await session.wait_until(client.service_is_ready, arguments.timeout):
                 message = phrase(
                     "service '{name}' did not appear within {timeout} s", name=name, timeout=arguments.timeout
                 )
@@ -147,7 +147,7 @@ def run_call(arguments: argparse.Namespace) -> int:
         while True:
             print(f"requester: making request: {request!r}\n")
             began = loop.time()
-            response = await session.answer(client.call_async(request), arguments.timeout)
+            response = await session.wait_for_result(client.call_async(request), arguments.timeout)
             if response is None:
                 raise LinkwrightError(
                     Diagnostic(

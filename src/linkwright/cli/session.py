@@ -139,7 +139,7 @@ class Session:
         done, _ = await asyncio.wait([self._outcome], timeout=timeout)
         return self._outcome.result() if done else None
 
-    async def until(self, condition: Callable[[], bool], timeout: float | None = None) -> bool:
+    async def wait_until(self, condition: Callable[[], bool], timeout: float | None = None) -> bool:
         """Poll a condition until it holds, and return whether it held.
 
         The result is False if the command ends, or `timeout` seconds pass, before it holds.
@@ -152,7 +152,7 @@ class Session:
             await asyncio.sleep(_POLL)
         return True
 
-    async def answer(self, future: Future[T], timeout: float | None = None) -> T | None:
+    async def wait_for_result(self, future: Future[T], timeout: float | None = None) -> T | None:
         """Wait for a future of the graph, and return its result.
 
         The result is None if the command ends, or `timeout` seconds pass, before the future is done.
@@ -241,7 +241,7 @@ def run_in_graph(
     if signals is not None:
         with signals:
             return signals.run(main)
-    with TerminationEnds():
+    with SigtermExits():
         return run_coroutine(main, raise_interrupts)
 
 
@@ -283,7 +283,7 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
         await asyncio.to_thread(transport.wait_for_discovery, _LONGEST_DISCOVERY)
 
 
-class TerminationEnds:
+class SigtermExits:
     """A context in which SIGTERM ends the process as Ctrl-C does.
 
     The graph is then left cleanly.

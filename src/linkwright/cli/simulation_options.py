@@ -124,7 +124,7 @@ def load_model(path: Path, values: Mapping[str, str], finder: PackageFinder) -> 
             return None
         if converted.diagnostics:
             print_diagnostics(converted.diagnostics, sys.stderr)
-        model = _found_beside(converted.sdf.models[0], path.parent, finder)
+        model = _with_absolute_uris(converted.sdf.models[0], path.parent, finder)
         return LoadedModel(save(model), model.name, None)
     description = examine(path, arguments=dict(values), packages=finder)
     if description.robot is None or not description.robot.links:
@@ -133,7 +133,7 @@ def load_model(path: Path, values: Mapping[str, str], finder: PackageFinder) -> 
     return LoadedModel(description.text, description.robot.name, description)
 
 
-def _found_beside(model: Model, folder: Path, finder: PackageFinder) -> Model:
+def _with_absolute_uris(model: Model, folder: Path, finder: PackageFinder) -> Model:
     """Return the model with absolute URIs where only its own folder resolves them.
 
     The model is passed on as a text, which has no folder.

@@ -146,7 +146,7 @@ def run_enrol(arguments: argparse.Namespace) -> int:
     for file in arguments.files:
         place = Note(phrase("in '{path}'", path=file))
         found = enrol(words, arguments.word, read_wav(file))
-        wrong += [diagnostic.but(notes=(*diagnostic.notes, place)) for diagnostic in found]
+        wrong += [diagnostic.with_changes(notes=(*diagnostic.notes, place)) for diagnostic in found]
     if wrong:
         raise LinkwrightError(*wrong)
     _write(words, path)

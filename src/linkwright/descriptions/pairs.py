@@ -80,7 +80,7 @@ class Model:
         if self.revision is None:
             return diagnostic
         notes = tuple(note._replace(span=self._span(note.span)) for note in diagnostic.notes)
-        return diagnostic.but(span=self._span(diagnostic.span), notes=notes)
+        return diagnostic.with_changes(span=self._span(diagnostic.span), notes=notes)
 
     def _span(self, span: Span | None) -> Span | None:
         return None if span is None else span._replace(file=self.named(span.file))

@@ -472,7 +472,7 @@ def _has_open_names(robot: Robot) -> bool:
 def _as_warning(error: Diagnostic) -> Diagnostic:
     """Convert an error of the expansion to a warning, for a file that urdfdom reads unexpanded."""
     note = Note(phrase("urdfdom reads the file without expanding it, and ignores the elements of xacro"))
-    return error.but(severity=Severity.WARNING, notes=(*error.notes, note))
+    return error.with_changes(severity=Severity.WARNING, notes=(*error.notes, note))
 
 
 def is_xacro(name: str, root: Element) -> bool:

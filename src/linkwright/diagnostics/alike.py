@@ -36,4 +36,4 @@ def _together(group: list[Diagnostic]) -> Diagnostic:
     notes.append(
         Note(counted("and {count} more like it (--all shows it)", "and {count} more like it (--all shows them)", rest))
     )
-    return first.but(notes=(*first.notes, *notes))
+    return first.with_changes(notes=(*first.notes, *notes))

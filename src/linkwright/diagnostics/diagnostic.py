@@ -188,7 +188,7 @@ class Diagnostic:
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self._fields().items())})"
 
-    def but(self, **changes: Any) -> Self:
+    def with_changes(self, **changes: Any) -> Self:
         """Return a copy of the diagnostic with other values for some attributes.
 
         Raises:

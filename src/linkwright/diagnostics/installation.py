@@ -75,18 +75,18 @@ class Installation:
     origin: Origin
     tool: tuple[str, ...]
     extras: frozenset[str] = frozenset()
-    beside: tuple[str, ...] = ()
+    other_packages: tuple[str, ...] = ()
 
     def command_for_extras(self, *extras: str) -> str:
         """Return the command that adds extras of Linkwright."""
-        return self._command(self.tool, {*self.extras, *extras}, self.beside)
+        return self._command(self.tool, {*self.extras, *extras}, self.other_packages)
 
     def command_for_packages(self, *packages: str) -> str:
         """Return the command that adds other packages, which are given by their names for pip."""
         if self.tool == PIPX:
             return _quoted(["pipx", "inject", self.origin.name, *packages])
         if self.tool == UV_TOOL:
-            return self._command(self.tool, self.extras, (*self.beside, *packages))
+            return self._command(self.tool, self.extras, (*self.other_packages, *packages))
         return _quoted([*self.tool, *packages])
 
     def _command(self, tool: tuple[str, ...], extras: Iterable[str], beside: Iterable[str]) -> str:

@@ -77,14 +77,14 @@ def _is_slip(word: str, meant: str) -> bool:
         return False
     if len(longer) == len(shorter) and sorted(word) == sorted(meant):
         return _is_within(word, meant, 1 + len(word) // 4)
-    if word[0] == meant[0] and _is_left_of(shorter, longer):
+    if word[0] == meant[0] and _is_abbreviation(shorter, longer):
         return True
     if len(shorter) <= _SHORT or (len(shorter) == len(longer) and word[0] != meant[0]):
         return False
     return longer.startswith(shorter) or _is_within(word, meant, max(1, len(longer) // 3))
 
 
-def _is_left_of(shorter: str, longer: str) -> bool:
+def _is_abbreviation(shorter: str, longer: str) -> bool:
     """Return whether a word is another one without some letters, such as ``cnt`` of ``count``.
 
     At most half of the letters may be omitted.

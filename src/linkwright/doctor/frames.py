@@ -21,7 +21,7 @@ def examine_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[D
     """Find problems with frames and their transforms."""
     yield from _contradictions(seen)
     yield from _numbers(seen)
-    circle = _circle(seen.transforms)
+    circle = _cycle(seen.transforms)
     if circle:
         yield Diagnostic(
             "DOC307",
@@ -95,7 +95,7 @@ def _numbers(seen: Observation) -> Iterator[Diagnostic]:
             )
 
 
-def _circle(transforms: Sequence[TransformSeen]) -> list[str]:
+def _cycle(transforms: Sequence[TransformSeen]) -> list[str]:
     """Return the frames of a cycle of parents, or an empty list if there is none.
 
     The first frame is repeated at the end.

@@ -53,7 +53,7 @@ def _types(seen: Observation) -> Iterator[Diagnostic]:
     for endpoint in (*seen.of_kind(EndpointKind.PUBLISHER), *seen.of_kind(EndpointKind.SUBSCRIPTION)):
         by_topic.setdefault(endpoint.name, {}).setdefault(endpoint.type_name, []).append(endpoint)
     for topic, all_types in sorted(by_topic.items()):
-        types = _without_takers_of_all(all_types)
+        types = _without_universal_subscribers(all_types)
         if len(types) < 2:
             continue
         notes = tuple(note for name, endpoints in sorted(types.items()) for note in _who(endpoints, name))
@@ -83,7 +83,7 @@ def _types(seen: Observation) -> Iterator[Diagnostic]:
             )
 
 
-def _without_takers_of_all(types: dict[str, list[EndpointInfo]]) -> dict[str, list[EndpointInfo]]:
+def _without_universal_subscribers(types: dict[str, list[EndpointInfo]]) -> dict[str, list[EndpointInfo]]:
     """Return a topic's endpoints by type, without nodes that subscribe to all published types.
 
     The result is empty if all subscribing nodes do so.

@@ -22,12 +22,12 @@ class Unfinished(Protocol):
 _unfinished: WeakValueDictionary[int, Unfinished] = WeakValueDictionary()
 
 
-def begun(what: Unfinished) -> None:
+def register_unfinished(what: Unfinished) -> None:
     """Register a writer, so that its file is finished before the process ends."""
     _unfinished[id(what)] = what
 
 
-def finished(what: Unfinished) -> None:
+def unregister_finished(what: Unfinished) -> None:
     """Unregister a writer whose file is finished."""
     _unfinished.pop(id(what), None)
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.collada_scene import ColladaFile, Limits, Unusual, read_scene
-from linkwright.geometry.plain import PlainMesh, fans, numbers
+from linkwright.geometry.plain import PlainMesh, fans, parse_numbers
 from linkwright.geometry.polyhedron import Faces
 
 
@@ -27,16 +27,16 @@ class Arrays:
 
     def moved(self, matrix: Array, tag: str, text: str | None) -> Array:
         """Return the product of a matrix and the matrix of a transform."""
-        moved: Array = matrix @ _transform(tag, numbers(text, np.float32).astype(np.float64))
+        moved: Array = matrix @ _transform(tag, parse_numbers(text, np.float32).astype(np.float64))
         return moved
 
     def faces(self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits) -> Faces:
         """Return the triangles of an element."""
-        rows = [numbers(text, np.int64).reshape(-1, width) for text in texts]
+        rows = [parse_numbers(text, np.int64).reshape(-1, width) for text in texts]
         if tag == "triangles":
             counts: NDArray[np.int64] = np.full(len(rows[0]) // 3, 3, np.int64)
         elif tag == "polylist":
-            counts = numbers(counted, np.int64)
+            counts = parse_numbers(counted, np.int64)
         else:
             counts = np.array([len(row) for row in rows])
         indices = np.concatenate(rows)
@@ -49,7 +49,7 @@ class Arrays:
 
     def mesh(self, text: str, faces: list[Faces]) -> PlainMesh:
         """Return the mesh with the corners in a text and the triangles of all elements."""
-        points = numbers(text, np.float32).reshape(-1, 3).astype(np.float64)
+        points = parse_numbers(text, np.float32).reshape(-1, 3).astype(np.float64)
         return PlainMesh(points, np.concatenate([np.zeros((0, 3), dtype=np.int64), *faces]))
 
 

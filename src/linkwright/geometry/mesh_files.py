@@ -223,7 +223,7 @@ def parser_fault(error: Exception) -> Phrase:
     return phrase("its parser says: {said}", said=foreign(lines[0] if lines else type(error).__name__))
 
 
-def beside(path: str) -> Any:
+def file_resolver(path: str) -> Any:
     """Return a resolver that gives the parser the files next to a mesh file.
 
     It is None for STL, which names no files.

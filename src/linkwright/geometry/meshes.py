@@ -23,7 +23,7 @@ from linkwright.diagnostics import (
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.mass import MassProperties
-from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, beside, placed_meshes
+from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, file_resolver, placed_meshes
 from linkwright.geometry.outlines import COLLADA_PADDING
 from linkwright.geometry.polyhedron import Faces, is_closed, merged, polyhedron_properties
 from linkwright.geometry.shapes import FARTHEST, Bounds
@@ -147,7 +147,7 @@ def _parse(data: bytes, kind: str, path: Path) -> TriangleMesh:
     if kind in ("obj", "glb", "gltf"):
         options["skip_materials"] = True
     if kind in ("glb", "gltf"):
-        options["resolver"] = beside(str(path))
+        options["resolver"] = file_resolver(str(path))
     vertices: list[Array] = [np.zeros((0, 3))]
     faces: list[Faces] = [np.zeros((0, 3), dtype=np.int64)]
     count = 0

@@ -32,7 +32,7 @@ class PlainMesh:
         self.visual: Any = SimpleNamespace(kind=None)
 
 
-def numbers(text: str | None, kind: type[Any]) -> Any:
+def parse_numbers(text: str | None, kind: type[Any]) -> Any:
     """Parse numbers separated by blanks, and return them as an array of a type.
 
     Raises:

@@ -75,7 +75,7 @@ class Placement(NamedTuple):
 
     def point(self, inner: Vector3) -> Vector3:
         """Transform a point from the inner frame to the outer frame."""
-        x, y, z = turned(self.rotation, inner)
+        x, y, z = rotated(self.rotation, inner)
         return x + self.position[0], y + self.position[1], z + self.position[2]
 
     def inside(self, outer: Placement) -> Placement:
@@ -86,7 +86,7 @@ class Placement(NamedTuple):
         """Return this frame in another frame, where both are given in the same frame."""
         back = transposed(other.rotation)
         difference = subtracted(self.position, other.position)
-        return Placement(product(back, self.rotation), turned(back, difference))
+        return Placement(product(back, self.rotation), rotated(back, difference))
 
 
 def placement(pose: Pose) -> Placement:
@@ -115,7 +115,7 @@ def transposed(matrix: Matrix) -> Matrix:
     )
 
 
-def turned(matrix: Matrix, vector: Vector3) -> Vector3:
+def rotated(matrix: Matrix, vector: Vector3) -> Vector3:
     """Return a vector rotated by a matrix."""
     return dot(matrix[0], vector), dot(matrix[1], vector), dot(matrix[2], vector)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from linkwright.geometry.collada_scene import Unusual
-from linkwright.geometry.plain import PlainMesh, fans, numbers
+from linkwright.geometry.plain import PlainMesh, fans, parse_numbers
 from linkwright.geometry.polyhedron import Faces
 from linkwright.loading.lean_patterns import lazy_pattern
 
@@ -38,7 +38,7 @@ def _mesh(vertices: list[bytes], polygons: list[bytes]) -> PlainMesh:
     width = len(vertices[0].split())
     if width < 3 or any(len(line.split()) != width for line in vertices):
         raise Unusual
-    points = numbers(b" ".join(vertices).decode(), np.float64).reshape(-1, width)[:, :3]
+    points = parse_numbers(b" ".join(vertices).decode(), np.float64).reshape(-1, width)[:, :3]
     faces = _faces(polygons)
     if faces.min() < 0 or faces.max() >= len(points):
         raise Unusual
@@ -47,7 +47,7 @@ def _mesh(vertices: list[bytes], polygons: list[bytes]) -> PlainMesh:
 
 def _faces(polygons: list[bytes]) -> Faces:
     counts = np.array([len(line.split()) for line in polygons])
-    corners = numbers(_OF_TEXTURES.sub(b"", b" ".join(polygons)).decode(), np.int64)
+    corners = parse_numbers(_OF_TEXTURES.sub(b"", b" ".join(polygons)).decode(), np.int64)
     if counts.min() < 3 or counts.sum() != len(corners):
         raise Unusual
     return fans(corners - 1, counts)

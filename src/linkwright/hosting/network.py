@@ -140,7 +140,7 @@ class SharedNames:
         hint = phrase(
             "give one of them another domain, as in ROS_DOMAIN_ID={other} linkwright launch ...", other=domain + 1
         )
-        return Diagnostic("LAUNCH148", message, hint=hint).but(severity=Severity.WARNING)
+        return Diagnostic("LAUNCH148", message, hint=hint).with_changes(severity=Severity.WARNING)
 
 
 def _listed(names: list[str]) -> Phrase:

@@ -98,4 +98,4 @@ def _read(arguments: Sequence[str]) -> tuple[str | None, str | None, list[Diagno
 
 
 def _remark(message: Phrase, hint: Phrase | None = None) -> Diagnostic:
-    return Diagnostic("LAUNCH144", message, hint=hint).but(severity=Severity.WARNING)
+    return Diagnostic("LAUNCH144", message, hint=hint).with_changes(severity=Severity.WARNING)

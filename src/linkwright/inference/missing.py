@@ -12,7 +12,7 @@ import numpy as np
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, joined, phrase, term
 from linkwright.geometry.mass import MassProperties
-from linkwright.geometry.shapes import transposed, turned
+from linkwright.geometry.shapes import rotated, transposed
 from linkwright.geometry.single import Vector3, added, length, rotation_from_z, rpy_from_quaternion, scaled
 from linkwright.inertia import DEFAULT_DENSITY, MeshLibrary, estimate
 from linkwright.inertia.blocks import inertial_parts
@@ -201,7 +201,7 @@ def _in_link(survey: Survey, wheel: Wheel) -> tuple[Vector3, Vector3]:
     frame = survey.frame(wheel.link)
     back = transposed(frame.rotation)
     offset = added(wheel.center, scaled(frame.position, -1.0))
-    return turned(back, wheel.axis), turned(back, offset)
+    return rotated(back, wheel.axis), rotated(back, offset)
 
 
 def _shape(geometry: Box | Cylinder | Capsule | Sphere) -> Element:

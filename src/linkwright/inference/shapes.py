@@ -10,7 +10,7 @@ import numpy as np
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.shapes import FARTHEST, Placement, bounds_of, placement, turned
+from linkwright.geometry.shapes import FARTHEST, Placement, bounds_of, placement, rotated
 from linkwright.geometry.single import Vector3, cross, dot, length, scaled, subtracted
 from linkwright.inertia import MeshLibrary
 from linkwright.urdf import Box, Capsule, Collision, Cylinder, Link, Mesh, Sphere, Visual
@@ -148,7 +148,7 @@ def _as_round(shape: Shape, frame: Placement, point: Vector3, axis: Vector3, mes
         return None
     if isinstance(geometry, Sphere):
         return Round(geometry.radius, None, along, shape)
-    direction = turned(own.rotation, (0.0, 0.0, 1.0))
+    direction = rotated(own.rotation, (0.0, 0.0, 1.0))
     if abs(dot(direction, axis)) < _ALONG or not 0.0 < geometry.length <= _LONGEST * geometry.radius:
         return None
     return Round(geometry.radius, geometry.length, along, shape)
@@ -188,7 +188,7 @@ def _reach(shape: Shape, frame: Placement, point: Vector3, axis: Vector3, meshes
     own = placement(shape.origin).inside(frame)
     if isinstance(geometry, Sphere):
         return _split(subtracted(own.position, point), axis)[1] + geometry.radius
-    if isinstance(geometry, Cylinder) and abs(dot(turned(own.rotation, (0.0, 0.0, 1.0)), axis)) >= _ALONG:
+    if isinstance(geometry, Cylinder) and abs(dot(rotated(own.rotation, (0.0, 0.0, 1.0)), axis)) >= _ALONG:
         return _split(subtracted(own.position, point), axis)[1] + geometry.radius
     box = bounds_of(geometry)
     corners = [

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import sqrt
 
-from linkwright.geometry.shapes import Placement, turned
+from linkwright.geometry.shapes import Placement, rotated
 from linkwright.geometry.single import length, scaled
 from linkwright.inertia import MeshLibrary, estimate
 from linkwright.inference.model import Wheel
@@ -107,7 +107,7 @@ class Survey:
         if not is_endless(joint) or not size or frame is None or body is None or body.joint is not joint:
             return None
         own = scaled(joint.axis, 1.0 / size)
-        axis = turned(frame.rotation, own)
+        axis = rotated(frame.rotation, own)
         if abs(axis[2]) > sqrt(1.0 - _UPRIGHT * _UPRIGHT):
             return None
         members = list(zip(self.bodies.members(body), body.frames.values(), strict=True))
@@ -185,7 +185,7 @@ class Survey:
         for above in self.chain(joint.parent):
             size = length(above.axis)
             if above.type in ("revolute", "continuous") and size:
-                z = turned(self._frames[above.child].rotation, above.axis)[2] / size
+                z = rotated(self._frames[above.child].rotation, above.axis)[2] / size
                 if abs(z) >= _UPRIGHT:
                     return above.name
         return None

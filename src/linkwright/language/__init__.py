@@ -1,1 +1,1 @@
-"""What an editor asks about the files of robot packages, without a protocol: findings, symbols, completions."""
+"""The answers to questions of editors about files of robot packages, without a protocol."""

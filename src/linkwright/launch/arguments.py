@@ -82,7 +82,9 @@ def _misspelt(name: str, undeclared: Sequence[str], error: Diagnostic) -> Diagno
     """
     near = nearest(name, undeclared, limit=1)
     return (
-        error.but(hint=phrase("'{near}' is given; did you mean '{name}'?", near=near[0], name=name)) if near else error
+        error.with_changes(hint=phrase("'{near}' is given; did you mean '{name}'?", near=near[0], name=name))
+        if near
+        else error
     )
 
 

@@ -334,7 +334,7 @@ def _under_condition(diagnostic: Diagnostic, having: Sequence[_Run], runs: Seque
     """
     notes = (*diagnostic.notes, _condition(having[0], runs))
     is_offered = diagnostic.severity is Severity.ERROR and all(run.given.is_offered for run in having)
-    return diagnostic.but(notes=notes, severity=Severity.WARNING if is_offered else diagnostic.severity)
+    return diagnostic.with_changes(notes=notes, severity=Severity.WARNING if is_offered else diagnostic.severity)
 
 
 def _condition(run: _Run, runs: Sequence[_Run]) -> Note:

@@ -183,7 +183,7 @@ def _run_rules(subject: Subject, scopes: Collection[Scope], suppressions: Suppre
                 raise ValueError(f"{rule.code} reported a finding of {diagnostic.code}")
             found.append(_with_trail(diagnostic))
     unread = subject.meshes.unread.diagnostics if subject.meshes.unread else ()
-    return [*_without_repetitions(found), *(each.but(severity=Severity.INFO) for each in unread)]
+    return [*_without_repetitions(found), *(each.with_changes(severity=Severity.INFO) for each in unread)]
 
 
 def _found_by(rule: Rule, subject: Subject) -> Iterable[Diagnostic]:
@@ -265,7 +265,7 @@ def with_configured_severity(diagnostics: Iterable[Diagnostic], settings: Settin
     for diagnostic in with_file_severity(with_package_severity(diagnostics)):
         if _is_wanted(diagnostic, settings):
             severity = settings.severity_of(diagnostic.code, diagnostic.severity)
-            yield diagnostic if severity is diagnostic.severity else diagnostic.but(severity=severity)
+            yield diagnostic if severity is diagnostic.severity else diagnostic.with_changes(severity=severity)
 
 
 def _is_wanted(diagnostic: Diagnostic, settings: Settings) -> bool:
@@ -319,7 +319,7 @@ def _with_trail(diagnostic: Diagnostic) -> Diagnostic:
     from linkwright.xacro.faults import origin_of
 
     trail = origin_of(diagnostic.element).trail
-    return diagnostic.but(notes=(*diagnostic.notes, *trail))
+    return diagnostic.with_changes(notes=(*diagnostic.notes, *trail))
 
 
 def _without_repetitions(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
@@ -344,5 +344,5 @@ def _without_repetitions(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
                 count,
             )
         )
-        kept[index] = kept[index].but(notes=(*kept[index].notes, note))
+        kept[index] = kept[index].with_changes(notes=(*kept[index].notes, note))
     return kept

@@ -50,9 +50,9 @@ def with_related(first: Diagnostic, others: Sequence[Diagnostic]) -> Diagnostic:
     if len(others) > _MOST_NOTES:
         notes += (Note(phrase("and {count} more", count=len(others) - _MOST_NOTES)),)
     message = phrase("{message} (and {count} more)", message=first.message, count=len(others))
-    return first.but(message=message, notes=(*first.notes, *notes))
+    return first.with_changes(message=message, notes=(*first.notes, *notes))
 
 
 def without_element(diagnostic: Diagnostic) -> Diagnostic:
     """Return a finding without its element, which would keep its whole description in memory."""
-    return diagnostic.but(element=None) if isinstance(diagnostic, Finding) else diagnostic
+    return diagnostic.with_changes(element=None) if isinstance(diagnostic, Finding) else diagnostic

@@ -114,7 +114,7 @@ def _of_a_folder(found: Iterable[Diagnostic], *, is_minor: bool) -> Iterator[Dia
     """
     for diagnostic in found:
         if diagnostic.code == _GIVEN_BY_USERS:
-            yield diagnostic.but(severity=Severity.INFO)
+            yield diagnostic.with_changes(severity=Severity.INFO)
             continue
         if is_minor and diagnostic.code == MISSING_PACKAGE:
             continue

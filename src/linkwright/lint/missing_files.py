@@ -38,7 +38,7 @@ def _of_built(diagnostic: Diagnostic) -> Diagnostic | None:
     if package is None or not is_made_later(package, path.relative_to(package.folder).as_posix()):
         return None
     hint = phrase("the build or a program makes it; until then the parts that need it are left out")
-    return diagnostic.but(severity=Severity.INFO, hint=hint)
+    return diagnostic.with_changes(severity=Severity.INFO, hint=hint)
 
 
 def _of_package_folder(diagnostic: Diagnostic) -> Diagnostic | None:
@@ -50,7 +50,7 @@ def _of_package_folder(diagnostic: Diagnostic) -> Diagnostic | None:
         return None
     beside = Path(os.path.relpath(package.folder / written, folder)).as_posix()
     hint = phrase("xacro looks from the folder of this file: write '{path}'", path=beside)
-    return diagnostic.but(severity=Severity.WARNING, hint=hint)
+    return diagnostic.with_changes(severity=Severity.WARNING, hint=hint)
 
 
 def _path(diagnostic: Diagnostic) -> Path:

@@ -34,7 +34,7 @@ def with_package_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnos
         hint = phrase(
             "install '{name}', or check it together with this package; the parts that need it are left out", name=name
         )
-        yield diagnostic.but(severity=Severity.WARNING, hint=hint)
+        yield diagnostic.with_changes(severity=Severity.WARNING, hint=hint)
 
 
 def is_declared(package: PackageContext, name: str) -> bool:

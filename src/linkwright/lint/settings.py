@@ -45,7 +45,7 @@ class Settings:
         options: rule name -> option -> value.
         arguments: pairs of a path pattern and the sets of values with which matching descriptions are checked.
         style: the style in which `linkwright format` writes files.
-        folder: the folder that path patterns are relative to; None without a configuration file.
+        folder: the folder that path patterns are relative to; None if there is no configuration file.
     """
 
     select: tuple[str, ...] | None = None

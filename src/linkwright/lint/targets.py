@@ -84,7 +84,7 @@ def find_targets(paths: Iterable[Path], *, around: bool = False) -> Targets:
 
 
 def find_xml_files(paths: Iterable[Path]) -> list[Path]:
-    """Return the XML files of robot packages among files and folders, each once; what a check skips is left out.
+    """Return the XML files of robot packages among files and folders, each once, without those that a check skips.
 
     In folders these are descriptions, worlds, launch files and manifests, without files that xacro made.
     """

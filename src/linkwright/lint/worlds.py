@@ -94,7 +94,7 @@ def for_classic(found: Iterable[Diagnostic], path: Path) -> Iterator[Diagnostic]
     is_classic = manifest is not None and any(map(manifest.declares, _PACKAGES_OF_CLASSIC))
     for diagnostic in found:
         is_taken = is_classic and diagnostic.code == _RESERVED and diagnostic.severity is Severity.WARNING
-        yield diagnostic.but(severity=Severity.INFO) if is_taken else diagnostic
+        yield diagnostic.with_changes(severity=Severity.INFO) if is_taken else diagnostic
 
 
 def _steps(sdf: Sdf) -> Iterator[Diagnostic]:
@@ -170,7 +170,7 @@ def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator
             )
             named = (child for child in element.walk() if child.tag in _ADDRESSES)
             place = next((element for element in named if element.text().strip() == geometry.uri), element)
-            yield _warning("SDF162", message, place, found.hint).but(severity=found.severity)
+            yield _warning("SDF162", message, place, found.hint).with_changes(severity=found.severity)
 
 
 def _inertial(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:
@@ -192,11 +192,11 @@ def _inertial(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:
         return
     if found.mass <= 0:
         finding = (_NEGATIVE_MASS if found.mass < 0 else _ZERO_MASS).finding(link.name, found)
-        yield finding.but(hint=phrase("masses are in kg and positive"))
+        yield finding.with_changes(hint=phrase("masses are in kg and positive"))
     flaw = flaw_of(found)
     if flaw is not None and flaw.kind in _FLAWS:
         hint = phrase("a solid box has m (a2 + b2) / 12 about each axis, with a and b its edges across the axis")
-        yield _FLAWS[flaw.kind].finding(link.name, found, flaw).but(hint=hint)
+        yield _FLAWS[flaw.kind].finding(link.name, found, flaw).with_changes(hint=hint)
 
 
 def _size(shape: Visual | Collision) -> Iterator[Diagnostic]:

@@ -133,10 +133,10 @@ class LinkwrightServer(LanguageServer):
                 await self._check(project, subject, texts, pending.pop(subject))
 
     async def _check(self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
-        """Check one subject, and publish its findings; a fault of ours is logged, and the server goes on."""
+        """Check one subject, and publish its findings; a fault of ours is logged, and the server continues."""
         try:
             found = await self._in_thread(partial(project.check, subject, texts, changed))
-        except Exception:  # the editor works on, and the log has the reason
+        except Exception:  # noqa: BLE001 - the editor continues to work, and the log has the reason
             _log.exception("The check of '%s' failed", subject)
             return
         for file, findings in found.items():

@@ -1,6 +1,6 @@
 """``<gazebo>`` in a URDF: the part of a description that only simulators read.
 
-Most of its content is SDF for the link, joint or model to which it refers. Some words are older than SDF and stand for
+Most of its content is SDF for the link, joint or model to which it refers. Some words are older than SDF and mean
 SDF elements (``mu1``, ``turnGravityOff``). Both are combined into one SDF element, which the SDF tables read, so that
 errors are reported at their place in the URDF.
 

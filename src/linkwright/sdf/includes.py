@@ -193,7 +193,7 @@ class _Resolver:
         except LinkwrightError as error:
             found = error.diagnostics
         note = Note(phrase("included here"), include.element.span() if include.element else None)
-        self.diagnostics += [diagnostic.but(notes=(*diagnostic.notes, note)) for diagnostic in found]
+        self.diagnostics += [diagnostic.with_changes(notes=(*diagnostic.notes, note)) for diagnostic in found]
         self._readings[path] = reading
         return reading
 

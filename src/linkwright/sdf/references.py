@@ -48,7 +48,8 @@ def _check(owner: World | Model, frames: Frames) -> Iterator[Diagnostic]:
         for part in parts:
             # libsdformat resolves these references only when needed, and continues if they are missing.
             yield from (
-                diagnostic.but(severity=Severity.WARNING) for diagnostic in _pose(part.pose, part.element, frames)
+                diagnostic.with_changes(severity=Severity.WARNING)
+                for diagnostic in _pose(part.pose, part.element, frames)
             )
     for joint in owner.joints:
         yield from _joint(joint, frames)

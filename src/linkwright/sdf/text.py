@@ -44,10 +44,11 @@ def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagn
         if found.code != _EMPTY:
             raise
         hint = phrase('a world begins with <sdf version="...">; was the file saved?')
-        raise LinkwrightError(found.but(hint=hint)) from None
+        raise LinkwrightError(found.with_changes(hint=hint)) from None
     findings = (*warnings, *more)
     return document, tuple(
-        diagnostic.but(severity=Severity.INFO) if diagnostic.code == _NOT_XML else diagnostic for diagnostic in findings
+        diagnostic.with_changes(severity=Severity.INFO) if diagnostic.code == _NOT_XML else diagnostic
+        for diagnostic in findings
     )
 
 
@@ -60,4 +61,4 @@ def _decoded(data: bytes, name: str) -> tuple[str, list[Diagnostic]]:
         if found.code != _NOT_TEXT or b"\0" in data:
             raise
         hint = phrase("it is read as Latin-1; save the file as UTF-8")
-        return data.decode("latin-1"), [found.but(severity=Severity.WARNING, hint=hint)]
+        return data.decode("latin-1"), [found.with_changes(severity=Severity.WARNING, hint=hint)]

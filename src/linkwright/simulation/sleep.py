@@ -2,7 +2,7 @@
 
 MuJoCo lets bodies sleep as soon as they are slow for ten steps. However, a pendulum is slow at its turning point, and
 so is any body that starts to move under a small force. Here a body may only sleep if its pose has not changed for a
-while. A body with contacts may move slightly in that time, because contacts never come to rest completely. A body that
+while. A body with contacts may move slightly in that time, because contacts never stop completely. A body that
 hangs, swings or floats may not move at all.
 """
 

@@ -114,7 +114,7 @@ class Findings:
         """Add a note to a finding, or to the latest one that is equal to it."""
         for index in range(len(self._found) - 1, -1, -1):
             if self._found[index] == finding:
-                self._found[index] = finding.but(notes=(*finding.notes, note))
+                self._found[index] = finding.with_changes(notes=(*finding.notes, note))
                 return
 
     def in_order(self) -> tuple[Diagnostic, ...]:

@@ -31,7 +31,7 @@ class Expansion:
         diagnostics: warnings, and the messages that the description writes with ``xacro.message`` and similar
             functions.
         inputs: the inputs of the expansion, or None.
-        problems: the mistakes because of which parts are missing; see `linkwright.xacro.parts`.
+        problems: the mistakes that made parts missing; see `linkwright.xacro.parts`.
     """
 
     def __init__(

@@ -1,9 +1,9 @@
-"""Formatting XML as people write it: indentation, spaces in tags, blank lines. Nothing that means anything changes.
+"""A formatter for XML: it changes indentation, spaces in tags and blank lines, and nothing else.
 
-Kept as they are: the order of attributes, quotes, entities, comments, processing instructions, the line ends of the
-file, every text that is not only blanks with all that is beside it, and values that extend over lines. An element that
-is written on one line stays there if it fits, and attributes keep their lines. Comments stay beside what they are
-written beside. Runs of blank lines become one. So a robot expands to the same bytes before and after.
+These stay as they are: the order of attributes, quotes, entities, comments, processing instructions, line ends,
+elements with text, and values that contain line ends. An element that is written on one line stays on one line if it
+fits. Attributes keep their lines, and comments stay beside the element on their line. Several blank lines become one.
+So a robot expands to the same bytes before and after.
 """
 
 from __future__ import annotations
@@ -285,7 +285,7 @@ def _top(document: Document) -> list[Node]:
 
 
 def _alike(some: Sequence[Node], others: Sequence[Node]) -> bool:
-    """Return whether nodes are equal but for texts of blanks."""
+    """Return whether nodes are equal except for texts of blanks."""
     pairs = [([*some], [*others])]
     while pairs:
         left, right = ([node for node in nodes if not _is_blank(node)] for nodes in pairs.pop())

@@ -249,13 +249,13 @@ def _parsed(source: SourceText, read_as: str, readers: Phrase) -> tuple[Document
         first = error.diagnostics[0]
         if first.code == _UNDECLARED:
             document = parse(source.text, source.name, blanks=False, read_as=read_as, any_prefix=True)
-            return document, (first.but(severity=Severity.WARNING),)
+            return document, (first.with_changes(severity=Severity.WARNING),)
         end = _end_of_root(first, read_as)
         if end is not None and _is_passed_over(read_as[end:]):
             warning, read_as = _passed_over(source, end, readers), read_as[:end] + blanked(read_as[end:])
         else:
             warning, read_as = (
-                first.but(severity=Severity.WARNING, notes=(Note(readers),)),
+                first.with_changes(severity=Severity.WARNING, notes=(Note(readers),)),
                 _repaired(source, error, read_as),
             )
         try:

@@ -29,7 +29,7 @@ _MARKUP = lazy_pattern(
 _NAME = lazy_pattern(r"</?\s*([^\s/>=\"'<]*)")
 _ATTRIBUTE = lazy_pattern(
     r"""([^\s=/>"'<]+)            # the name
-        (?:(\s*=\s*)              # what stands between it and the quote
+        (?:(\s*=\s*)              # the equals sign
         (?:(["'])([^"'<]*?)\3 | (["'])([^<]*?)\5 | ["']([^<>\n]*?)(?=\s*/?>|\n|<|\Z) | ([^\s"'<>/]*)))?""",
     re.VERBOSE,
 )
@@ -37,7 +37,7 @@ _ENDS = {"comment": "-->", "cdata": "]]>", "instruction": "?>"}
 
 
 class Kind(Enum):
-    """What a token is."""
+    """The kinds of tokens."""
 
     TEXT = "text"
     START = "start"
@@ -115,7 +115,7 @@ class Token(NamedTuple):
 
 
 def tokens(text: str) -> Iterator[Token]:
-    """Yield the tokens of a text, which may be no XML; their texts together are the text."""
+    """Yield the tokens of a text, which need not be XML; joined, their texts are the text."""
     at = 0
     while at < len(text):
         opening = text.find("<", at)

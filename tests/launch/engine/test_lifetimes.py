@@ -217,19 +217,19 @@ def _is_pooled(thread: threading.Thread) -> bool:
 class TestGuardian:
     def test_it_ends_with_the_launch(self) -> None:
         guardian = Guardian()
-        guardian.marked({})
+        guardian.start_and_mark({})
         process = guardian._process
         assert process is not None
         guardian.watch(1)
         guardian.close()
         assert process.returncode == 0
         guardian.close()  # a second time does nothing
-        assert guardian.marked({})[MARK]
+        assert guardian.start_and_mark({})[MARK]
         assert guardian._process is None
 
     def test_a_guardian_that_was_killed_is_done_without(self) -> None:
         guardian = Guardian()
-        guardian.marked({})
+        guardian.start_and_mark({})
         assert guardian._process is not None
         guardian._process.kill()
         guardian._process.wait()
@@ -238,5 +238,5 @@ class TestGuardian:
         guardian.close()
 
     def test_groups_that_are_gone_are_no_error(self) -> None:
-        guardian_program.end({2**22 - 3})
+        guardian_program.end_groups({2**22 - 3})
         assert guardian_program.marked_groups(b"LINKWRIGHT_LAUNCH=no-such-launch") == set()

@@ -144,7 +144,7 @@ def run_play(arguments: argparse.Namespace) -> int:
                     logger.info("Press CURSOR_UP and CURSOR_DOWN to play 10 % faster and slower")
                 player.start()
                 try:
-                    await session.until(lambda: player.finished)
+                    await session.wait_until(lambda: player.finished)
                 finally:
                     player.close()
             for publisher in player.publishers:

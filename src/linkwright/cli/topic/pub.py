@@ -111,7 +111,7 @@ async def _wait_for(session: Session, publisher: Publisher[Any], wanted: int, lo
             return False
         print(f"Waiting for at least {wanted} matching subscription(s)...")
         step = _WAITING_NOTICE_PERIOD if longest is None else min(_WAITING_NOTICE_PERIOD, longest - waited)
-        await session.until(lambda: publisher.get_subscription_count() >= wanted, step)
+        await session.wait_until(lambda: publisher.get_subscription_count() >= wanted, step)
         waited += step
     return True
 

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.numbers import share
+from linkwright.cli.numbers import fraction
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, foreign, phrase, print_diagnostics
 
@@ -35,9 +35,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--dictionary", metavar="NAME", help="which markers aruco and apriltag look for, such as 6X6_250"
     )
-    parser.add_argument("--threshold", metavar="SCORE", type=share, default=0.5, help="the least score, default 0.5")
+    parser.add_argument("--threshold", metavar="SCORE", type=fraction, default=0.5, help="the least score, default 0.5")
     parser.add_argument(
-        "--iou", metavar="SHARE", type=share, default=0.5, help="how much boxes of a class may overlap, default 0.5"
+        "--iou", metavar="SHARE", type=fraction, default=0.5, help="how much boxes of a class may overlap, default 0.5"
     )
     parser.add_argument("--classes", metavar="NAME", action="append", help="only this class; may be given again")
     parser.add_argument("--device", default="cpu", help="where a network runs: cpu (the default), or cuda:0")

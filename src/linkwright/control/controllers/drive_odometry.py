@@ -33,7 +33,7 @@ def frame_prefix(node: ControllerNode, prefix: str, *, enabled: bool = True) -> 
 
     Args:
         node: the controller's node.
-        prefix: the requested prefix; ``~`` or an empty prefix stands for the namespace of the node.
+        prefix: the requested prefix; ``~`` or an empty prefix means the namespace of the node.
         enabled: whether frames have a prefix.
 
     Source: diff_drive_controller (``tf_frame_prefix``, ``tf_frame_prefix_enable``).

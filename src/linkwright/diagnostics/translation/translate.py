@@ -112,7 +112,7 @@ def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
     if lang == "en":
         return diagnostic
     words = wording(lang)
-    return diagnostic.but(
+    return diagnostic.with_changes(
         message=_translated(diagnostic.message, words),
         notes=tuple(Note(_translated(note.message, words), note.span) for note in diagnostic.notes),
         hint=_translated(diagnostic.hint, words) if diagnostic.hint else diagnostic.hint,

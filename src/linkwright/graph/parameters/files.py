@@ -202,7 +202,7 @@ class _Reader:
         except _NestedListError as error:
             (finding,) = error.diagnostics
             note = Note(phrase("the parameter is left out"))
-            warning = finding.but(severity=Severity.WARNING, notes=(note,))
+            warning = finding.with_changes(severity=Severity.WARNING, notes=(note,))
             self._rules.left_out.append((pattern, warning))
             self._skip_rest_of_list()
 

@@ -27,7 +27,7 @@ class Guardian:
         self._closed = False
         self._folder: Path | None = None
 
-    def marked(self, environment: dict[str, str]) -> dict[str, str]:
+    def start_and_mark(self, environment: dict[str, str]) -> dict[str, str]:
         """Start the guardian, and return the environment with the mark by which it finds a process."""
         self._start()
         return {**environment, _MARK: self._identity}
@@ -36,7 +36,7 @@ class Guardian:
         """Register the process group whose leader has this process ID."""
         self._send(f"+{pid}\n")
 
-    def owns(self, folder: Path) -> None:
+    def register_folder(self, folder: Path) -> None:
         """Register a folder of temporary files to delete if the launcher is killed."""
         self._folder = folder
         self._send(f"={folder}\n")
@@ -76,7 +76,7 @@ class Guardian:
                 bufsize=0,
             )
         if self._folder is not None:
-            self.owns(self._folder)
+            self.register_folder(self._folder)
 
     def _send(self, line: str) -> None:
         if self._process is not None and self._process.stdin is not None:

@@ -36,7 +36,7 @@ def main(mark: str) -> None:
             folder = line[1:].rstrip("\n")
         else:
             return
-    end(groups | marked_groups(mark.encode()))
+    end_groups(groups | marked_groups(mark.encode()))
     if folder:
         import shutil
 
@@ -71,17 +71,17 @@ def _group_of(pid: int) -> int:
         return 0
 
 
-def end(groups: set[int]) -> None:
+def end_groups(groups: set[int]) -> None:
     """End process groups, escalating to stronger signals for the groups that remain."""
     for number, seconds in _STAGES:
-        groups = {group for group in groups if send(group, number)}
+        groups = {group for group in groups if send_signal(group, number)}
         deadline = time.monotonic() + seconds
         while groups and time.monotonic() < deadline:
             time.sleep(_STEP_SECONDS)
-            groups = {group for group in groups if send(group, 0)}
+            groups = {group for group in groups if send_signal(group, 0)}
 
 
-def send(group: int, number: int) -> bool:
+def send_signal(group: int, number: int) -> bool:
     """Send a signal to a group, and return whether the group exists."""
     try:
         os.killpg(group, number)

@@ -62,7 +62,7 @@ class Omissions:
         )
         self._unreported.clear()
 
-    def offered(self, error: LinkwrightError) -> tuple[Diagnostic, ...]:
+    def with_skip_command(self, error: LinkwrightError) -> tuple[Diagnostic, ...]:
         """Return the findings of a fatal error.
 
         A note on the command that would skip the missing part is added, if there is such a command.
@@ -71,7 +71,7 @@ class Omissions:
         if self._command is None or not _is_missing(error):
             return error.diagnostics
         note = Note(phrase("to skip it and run the rest: {command}", command=foreign(self._command)))
-        return (*others, last.but(notes=(*last.notes, note)))
+        return (*others, last.with_changes(notes=(*last.notes, note)))
 
 
 def note_that_nothing_is_left(error: LinkwrightError) -> None:
@@ -82,7 +82,7 @@ def note_that_nothing_is_left(error: LinkwrightError) -> None:
     *others, last = error.diagnostics
     if _is_missing(error) and last.span is not None:
         note = Note(phrase("the launch file itself needs it, so no part can be skipped"))
-        error.diagnostics = (*others, last.but(notes=(*last.notes, note)))
+        error.diagnostics = (*others, last.with_changes(notes=(*last.notes, note)))
 
 
 def _is_missing(error: LinkwrightError) -> bool:

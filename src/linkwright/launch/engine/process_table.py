@@ -64,10 +64,10 @@ class ProcessTable:
         for process in tuple(self._running):
             self._session.spawn(process.stop())
 
-    def hurry(self) -> None:
+    def escalate(self) -> None:
         """Send SIGTERM now to the processes that were asked to end, and SIGKILL soon after."""
         for process in tuple(self._running):
-            process.hurry()
+            process.escalate()
 
     @property
     def names(self) -> list[str]:
@@ -87,9 +87,9 @@ class ProcessTable:
         for process in (*self._running, *self._left_behind):
             process.signal_group(getattr(signal, "SIGKILL", signal.SIGTERM))
 
-    def owns(self, folder: Path) -> None:
+    def register_folder(self, folder: Path) -> None:
         """Register a folder to be deleted if the launcher is killed."""
-        self._guardian.owns(folder)
+        self._guardian.register_folder(folder)
 
     def close(self) -> None:
         """Close the guardian after all processes have ended."""
@@ -113,7 +113,7 @@ class ProcessTable:
                 return
             finally:
                 self._running.discard(process)
-                if process.group_lives():
+                if process.is_group_alive():
                     self._left_behind.append(process)
             starts += 1
             if not plan.respawn or 0 <= plan.respawn_limit < starts:

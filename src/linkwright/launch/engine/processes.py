@@ -100,7 +100,7 @@ class RunningProcess:
             transport.close()
         returncode = transport.get_returncode()
         assert returncode is not None
-        if not self.group_lives():
+        if not self.is_group_alive():
             self._guardian.release(transport.get_pid())
         self._flush()
         self._report_end(transport.get_pid(), returncode)
@@ -132,7 +132,7 @@ class RunningProcess:
             )
             self.signal_group(_KILL if following == "SIGKILL" else signal.SIGTERM)
 
-    def hurry(self) -> None:
+    def escalate(self) -> None:
         """Escalate to the next signal now, because the user does not want to wait."""
         self._hurried = True
         self._news.set()
@@ -150,7 +150,7 @@ class RunningProcess:
         self._log.info_line(self.name, f"sending signal '{number.name}' to process[{self.name}]")
         self.signal_group(number)
 
-    def group_lives(self) -> bool:
+    def is_group_alive(self) -> bool:
         """Return whether the process or any of its children is still running."""
         if self._transport is None or not _HAS_GROUPS:
             return False
@@ -176,7 +176,7 @@ class RunningProcess:
     async def _start(self) -> None:
         plan = self.plan
         loop = asyncio.get_running_loop()
-        environment = self._guardian.marked(process_environment(plan.environment))
+        environment = self._guardian.start_and_mark(process_environment(plan.environment))
         options: dict[str, Any] = {"cwd": plan.folder, "env": environment, "start_new_session": True}
         terminals = _pseudo_terminals() if plan.emulate_tty else []
         if terminals:
@@ -255,7 +255,7 @@ class RunningProcess:
 
     # --- output ---------------------------------------------------------------------------------------------
 
-    def take(self, number: int, chunk: bytes) -> None:
+    def handle_output(self, number: int, chunk: bytes) -> None:
         """Handle output that the process wrote to stdout (1) or stderr (2)."""
         action = self.plan.action
         action.wrote(number, chunk)
@@ -336,7 +336,7 @@ class _Streams(asyncio.SubprocessProtocol):
         self._process.started(transport)
 
     def pipe_data_received(self, fd: int, data: bytes) -> None:
-        self._process.take(fd, data)
+        self._process.handle_output(fd, data)
 
     def pipe_connection_lost(self, fd: int, exc: Exception | None) -> None:
         self._process.stream_closed(fd)
@@ -353,7 +353,7 @@ class _Terminal(asyncio.Protocol):
         self._number = number
 
     def data_received(self, data: bytes) -> None:
-        self._process.take(self._number, data)
+        self._process.handle_output(self._number, data)
 
     def connection_lost(self, exc: Exception | None) -> None:
         self._process.stream_closed(self._number)

@@ -167,7 +167,7 @@ def _end_tasks(loop: asyncio.AbstractEventLoop) -> None:
     loop.run_until_complete(loop.shutdown_asyncgens())
 
 
-class ServiceOfProcesses(LaunchService):
+class ProcessLaunchService(LaunchService):
     """Runs every node as a process, so that tests can observe its output and exit status."""
 
     _isolates_nodes = True

@@ -18,7 +18,7 @@ from linkwright.launch.engine.omissions import Omissions
 from linkwright.launch.engine.process_table import ProcessTable
 from linkwright.launch.engine.supervisor import SessionOptions
 from linkwright.launch.errors.places import located
-from linkwright.launch.errors.user_code import DEEPEST, endless, explain
+from linkwright.launch.errors.user_code import DEEPEST, endless_nesting_error, explain
 from linkwright.launch.log.loggers import launch_config
 from linkwright.launch.model import events
 from linkwright.launch.model.context import LaunchContext
@@ -111,7 +111,7 @@ class LaunchSession:
             from linkwright.files.scratch_folders import ScratchFolder
 
             self._scratch = ScratchFolder("launch")
-            self.processes.owns(Path(self._scratch.name))
+            self.processes.register_folder(Path(self._scratch.name))
         return Path(self._scratch.name)
 
     def include(self, description: LaunchDescriptionEntity) -> None:
@@ -132,7 +132,7 @@ class LaunchSession:
         try:
             self._visit(entity, context)
         except LinkwrightError as error:
-            self.log.diagnostics(self._omissions.offered(error))
+            self.log.diagnostics(self._omissions.with_skip_command(error))
             self.fail(entity)
             self.host.forget_planned()
             self.shut_down("a launch action failed")
@@ -247,7 +247,7 @@ class LaunchSession:
         """
         self.log.warning_line("launch", reason)
         if self.ending:
-            self.processes.hurry()
+            self.processes.escalate()
             return
         self.emit(events.Shutdown(reason=reason, due_to_sigint=True))
         if self.loop is not None:
@@ -270,12 +270,12 @@ class LaunchSession:
 
     def _visit(self, entity: LaunchDescriptionEntity, context: LaunchContext, depth: int = 1) -> None:
         if depth > DEEPEST:
-            raise endless(entity.place)
+            raise endless_nesting_error(entity.place)
         try:
             following = entity.visit(context)
         except DescriptionError as error:
             if not (error.missing or self.ending):
-                self._await_repair(entity, context.snapshot(), error)
+                self._retry_when_fixed(entity, context.snapshot(), error)
             elif not self._omissions.skip(located(error, entity.place)):
                 raise
             return
@@ -294,7 +294,9 @@ class LaunchSession:
         except LinkwrightError as error:
             raise located(entity.explain_inside(error), entity.place) from error
 
-    def _await_repair(self, entity: LaunchDescriptionEntity, context: LaunchContext, error: DescriptionError) -> None:
+    def _retry_when_fixed(
+        self, entity: LaunchDescriptionEntity, context: LaunchContext, error: DescriptionError
+    ) -> None:
         """Record a failure, and visit the entity again once its model file can be expanded."""
         self.fail(error.call)
 

@@ -120,7 +120,7 @@ _being_read: list[Place | None] = []
 
 
 @contextmanager
-def reading(place: Place | None) -> Iterator[None]:
+def reading_markup_at(place: Place | None) -> Iterator[None]:
     """Set the place that is recorded for objects created in this context."""
     _being_read.append(place)
     try:
@@ -130,7 +130,7 @@ def reading(place: Place | None) -> Iterator[None]:
 
 
 @contextmanager
-def not_reading() -> Iterator[None]:
+def outside_markup() -> Iterator[None]:
     """Record the caller's place on Python's stack for objects created in this context.
 
     Otherwise, they would get the place in the markup being read.
@@ -193,7 +193,7 @@ def located(error: LinkwrightError, place: Place | None) -> LinkwrightError:
         return error
     source = place.source()
     span = place.span(source)
-    error.diagnostics = tuple(diagnostic.but(span=span, source=source) for diagnostic in error.diagnostics)
+    error.diagnostics = tuple(diagnostic.with_changes(span=span, source=source) for diagnostic in error.diagnostics)
     return error
 
 

@@ -12,7 +12,7 @@ from linkwright.packages import PackageNotFoundError
 _MARK = "is_unavailable"
 
 
-def unavailable(error: LinkwrightError) -> LinkwrightError:
+def mark_unavailable(error: LinkwrightError) -> LinkwrightError:
     """Mark an error as caused by a package or program that is not installed.
 
     A misspelt name is not such a cause.
@@ -22,7 +22,7 @@ def unavailable(error: LinkwrightError) -> LinkwrightError:
 
 
 def is_unavailable(error: LinkwrightError) -> bool:
-    """Return whether an error was marked by `unavailable`."""
+    """Return whether an error was marked by `mark_unavailable`."""
     return bool(vars(error).get(_MARK))
 
 

@@ -71,7 +71,7 @@ def explain(error: BaseException, where: str, fallback: Place | None = None) -> 
     return as_ros_error(error if isinstance(error, Exception) else None, diagnostic)
 
 
-def endless(place: Place | None) -> LinkwrightError:
+def endless_nesting_error(place: Place | None) -> LinkwrightError:
     """Return the error that reports apparently endless nesting of actions."""
     message = phrase("launch actions are nested without end: more than {count} levels", count=DEEPEST)
     hint = phrase(
@@ -81,7 +81,7 @@ def endless(place: Place | None) -> LinkwrightError:
     return error_at(place, "LAUNCH156", message, hint)
 
 
-def too_deep(path: str) -> LinkwrightError:
+def too_deep_error(path: str) -> LinkwrightError:
     """Return the error for a launch file that is nested too deeply for Python's stack."""
     message = phrase("launch file '{path}' is nested too deeply to be read", path=display_path(path))
     return error_at(None, "LAUNCH156", message)
@@ -109,13 +109,13 @@ def _hint(error: BaseException, source: SourceText | None, span: Span | None) ->
         return did_you_mean(name, known) if name else None
     if isinstance(error, AttributeError):
         name, owner = getattr(error, "name", None), getattr(error, "obj", None)
-        return did_you_mean(name, _offered(owner)) if name else None
+        return did_you_mean(name, _public_names(owner)) if name else None
     if isinstance(error, TypeError):
         return _keyword_hint(error) or _missing_hint(error, source, span)
     return None
 
 
-def _offered(owner: object) -> list[str]:
+def _public_names(owner: object) -> list[str]:
     """Return the public names of an object.
 
     Submodules are excluded, because they are often named like their contents.
@@ -133,7 +133,7 @@ def _import_hint(error: ImportError) -> Phrase | None:
     found = missing_name(error)
     if found:
         name, module = found
-        return where_it_is(error) or did_you_mean(name, _offered(sys.modules.get(module)))
+        return where_it_is(error) or did_you_mean(name, _public_names(sys.modules.get(module)))
     missing = error.name or ""
     parent, _, name = missing.rpartition(".")
     if parent in sys.modules:

@@ -88,15 +88,15 @@ def _modules(package: str, share: Path) -> Iterator[str]:
     if is_installed(share):
         for folder in python_folders(install_prefix(share), package):
             for path in folder.glob("*-info/entry_points.txt"):
-                yield from _named(in_metadata(text_of(path), ACTIONS))
+                yield from _modules_in_lines(in_metadata(text_of(path), ACTIONS))
         return
     for name, read in (("setup.py", in_setup_py), ("setup.cfg", in_setup_cfg), ("pyproject.toml", in_pyproject)):
         text = text_of(share / name)
         if ACTIONS in text:
-            yield from _named(read(text, ACTIONS))
+            yield from _modules_in_lines(read(text, ACTIONS))
 
 
-def _named(lines: list[str]) -> Iterator[str]:
+def _modules_in_lines(lines: list[str]) -> Iterator[str]:
     """Yield the modules in lines of the form ``name = module:attribute``."""
     for line in lines:
         _, equals, target = line.partition("=")

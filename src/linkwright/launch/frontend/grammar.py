@@ -11,7 +11,7 @@ import re
 from typing import Any, NoReturn
 
 from linkwright.diagnostics import Phrase, did_you_mean, phrase
-from linkwright.launch.errors.places import MarkupPlace, Place, error_at, reading
+from linkwright.launch.errors.places import MarkupPlace, Place, error_at, reading_markup_at
 from linkwright.launch.frontend.instantiate import instantiate_substitution
 from linkwright.launch.model.markup.entity import place_of
 from linkwright.launch.model.markup.expose import substitution_parse_methods
@@ -105,7 +105,7 @@ class _Reader:
 
     def _add_text(self, parts: list[Substitution], start: int) -> None:
         if start < self._at:
-            with reading(self._part(start, self._at)):
+            with reading_markup_at(self._part(start, self._at)):
                 parts.append(TextSubstitution(text=replace_escaped_characters(self._text[start : self._at])))
 
     def _substitution(self, quote: str) -> Substitution:

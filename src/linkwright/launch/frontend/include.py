@@ -16,7 +16,7 @@ from linkwright.diagnostics import (
     quoted_names,
 )
 from linkwright.launch.errors.places import MarkupPlace, error_at
-from linkwright.launch.errors.unavailable import is_foreign, unavailable
+from linkwright.launch.errors.unavailable import is_foreign, mark_unavailable
 from linkwright.launch.frontend.sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.actions.configurations import (
@@ -133,7 +133,7 @@ class IncludeLaunchDescription(Action):
             description = self._source.get_launch_description(context)
         except LinkwrightError as error:
             if is_foreign(error) or self._is_of_substitute():
-                unavailable(error)
+                mark_unavailable(error)
             raise
         given = [perform_substitutions(context, name) for name, _ in self._arguments]
         self._check_required(description.get_launch_arguments(), given)
@@ -157,7 +157,7 @@ class IncludeLaunchDescription(Action):
         if self.place is not None and self._source.location_path is not None:
             note = Note(phrase("included from here"), self.place.span(self.place.source()))
             error.diagnostics = tuple(
-                diagnostic if note in diagnostic.notes else diagnostic.but(notes=(*diagnostic.notes, note))
+                diagnostic if note in diagnostic.notes else diagnostic.with_changes(notes=(*diagnostic.notes, note))
                 for diagnostic in error.diagnostics
             )
         return error
@@ -185,7 +185,7 @@ class IncludeLaunchDescription(Action):
             hint = (
                 phrase("it is given {near}; did you mean that?", near=quoted_names(near, " or "))
                 if near
-                else self._how_to_give(argument.name)
+                else self._argument_hint(argument.name)
             )
             path = self._source.location_path
             if path is None:
@@ -215,7 +215,7 @@ class IncludeLaunchDescription(Action):
                 ros_error = TypeError(f"Failed to normalize given item of type '{type(value)}'")
                 raise error_at(self.place, "LAUNCH114", message, hint, ros_error=ros_error)
 
-    def _how_to_give(self, name: str) -> Phrase:
+    def _argument_hint(self, name: str) -> Phrase:
         """Return a hint on how to pass an argument, in the language of the including file."""
         if not isinstance(self.place, MarkupPlace):
             return phrase("add ('{name}', VALUE) to launch_arguments", name=name)

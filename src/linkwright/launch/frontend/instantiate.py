@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError, did_you_mean, foreign, phrase
-from linkwright.launch.errors.places import Place, error_at, located, reading
+from linkwright.launch.errors.places import Place, error_at, located, reading_markup_at
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.markup.entity import Entity
 from linkwright.launch.model.markup.expose import action_parse_methods, substitution_parse_methods
@@ -44,7 +44,7 @@ def instantiate_action(entity: Entity, parser: Parser) -> Action:
             did_you_mean(entity.type_name, action_parse_methods),
             ros_error=RuntimeError(f"Unrecognized entity of the type: {entity.type_name}"),
         )
-    with reading(place):
+    with reading_markup_at(place):
         try:
             action_type: type[Action]
             action_type, kwargs = method(entity, parser)
@@ -77,7 +77,7 @@ def instantiate_substitution(
             did_you_mean(type_name, substitution_parse_methods),
             ros_error=RuntimeError(f"Unknown substitution: {type_name}"),
         )
-    with reading(place):
+    with reading_markup_at(place):
         try:
             substitution_type: type[Substitution]
             substitution_type, kwargs = method([] if args is None else args)

@@ -12,7 +12,7 @@ from typing import Any
 from linkwright.diagnostics import LinkwrightError, display_path, phrase
 from linkwright.launch.errors.exceptions import InvalidLaunchFileError
 from linkwright.launch.errors.places import error_at
-from linkwright.launch.errors.user_code import too_deep
+from linkwright.launch.errors.user_code import too_deep_error
 from linkwright.launch.frontend.python_file import load_python_launch_file, load_python_module, read_launch_file
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.packages.share_layout import source_of
@@ -65,7 +65,7 @@ def load_markup_launch_file(path: Path, text: str | None = None) -> LaunchDescri
         entity, parser = Parser.load(opened)
         return parser.parse_description(entity)
     except RecursionError as error:
-        raise too_deep(opened.name) from error
+        raise too_deep_error(opened.name) from error
 
 
 _ANY = "launch.launch_description_sources.any_launch_file_utilities"

@@ -22,7 +22,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.files.input_files import read_text
 from linkwright.launch.errors.exceptions import InvalidPythonLaunchFileError, as_ros_error
-from linkwright.launch.errors.places import MarkupPlace, Place, error_at, not_reading
+from linkwright.launch.errors.places import MarkupPlace, Place, error_at, outside_markup
 from linkwright.launch.errors.user_code import explain
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.packages.launch_files import is_launch_file_name
@@ -40,7 +40,7 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
             LAUNCH104, an exception inside it; LAUNCH105, it has no such function; LAUNCH106, the function returns no
             description.
     """
-    with not_reading():
+    with outside_markup():
         source = read_launch_file(path)
         module = _run(source, path)
         function = getattr(module, _FUNCTION, None)
@@ -85,7 +85,7 @@ def load_python_module(path: Path) -> ModuleType:
     Raises:
         LinkwrightError: LAUNCH101 to LAUNCH104, see `load_python_launch_file`.
     """
-    with not_reading():
+    with outside_markup():
         return _run(read_launch_file(path), path)
 
 

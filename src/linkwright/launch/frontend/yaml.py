@@ -119,7 +119,7 @@ class Entity(MarkupEntity):
             )
             raise error_at(self._place_of_part(name), "LAUNCH118", message, ros_error=TypeError(text))
         if data_type is str and isinstance(value, (bool, int, float)):
-            return PlacedText(_spelled(value), self._place_of_part(name))
+            return PlacedText(_scalar_text(value), self._place_of_part(name))
         if not is_instance_of(value, data_type, can_be_str=can_be_str):
             text = (
                 f"Attribute '{name}' of Entity '{self.type_name}' expected to be of type '{data_type}', "
@@ -135,7 +135,7 @@ class Entity(MarkupEntity):
         return self.place
 
 
-def _spelled(value: bool | float) -> str:
+def _scalar_text(value: bool | float) -> str:
     """Return a YAML value as text with the same meaning in conditions and parameters."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 

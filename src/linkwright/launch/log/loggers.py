@@ -201,14 +201,14 @@ def get_logger(name: str | None = None) -> logging.Logger:
     """
     logger = logging.getLogger(name)
     for handler in (launch_config.get_screen_handler(), launch_config.main_file):
-        if handler not in logger.handlers and not _shown_above(logger, handler):
+        if handler not in logger.handlers and not _is_handled_by_parent(logger, handler):
             logger.addHandler(handler)
     if not launch_config.level_chosen and logger.getEffectiveLevel() > logging.INFO:
         logger.setLevel(logging.INFO)  # Python's default would hide lines that the launcher shows
     return logger
 
 
-def _shown_above(logger: logging.Logger, handler: logging.Handler) -> bool:
+def _is_handled_by_parent(logger: logging.Logger, handler: logging.Handler) -> bool:
     """Return whether a parent logger already passes the logger's lines to a handler."""
     above: logging.Logger | None = logger if logger.propagate else None
     while above is not None and above.parent is not None:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from linkwright.launch.model.running_launch import RunningLaunch
 
 
-class Performed(Protocol):
+class Performable(Protocol):
     """The interface of substitutions as the context uses it."""
 
     place: Place | None
@@ -119,7 +119,7 @@ class LaunchContext:
         self._environment_stack: list[dict[str, str]] = []
         self._session: RunningLaunch | None = None
 
-    def perform_substitution(self, substitution: Performed) -> str:
+    def perform_substitution(self, substitution: Performable) -> str:
         """Evaluate a substitution; an error includes the substitution's location."""
         try:
             return substitution.perform(self)
@@ -302,7 +302,7 @@ class LaunchContext:
         else:
             self._session.log.diagnostics([warning])
 
-    def remark(self, about: object, findings: Sequence[Diagnostic]) -> None:
+    def report_findings(self, about: object, findings: Sequence[Diagnostic]) -> None:
         """Report findings about a robot description, both here and in the viewer."""
         if self._session is None:
             print_diagnostics(findings, sys.stderr)

@@ -23,7 +23,7 @@ def declared_arguments(
     condition are marked by ``conditionally_included``. Declarations after a `ResetLaunchConfigurations` cannot be given
     from outside and are omitted.
     """
-    return list(_Declared.by(entities, conditional=conditional_inclusion).arguments.values())
+    return list(_Declarations.by(entities, conditional=conditional_inclusion).arguments.values())
 
 
 def undeclared_names(entities: Iterable[LaunchDescriptionEntity], names: Iterable[str]) -> list[str]:
@@ -31,7 +31,7 @@ def undeclared_names(entities: Iterable[LaunchDescriptionEntity], names: Iterabl
 
     The result is empty if parts of the description are not yet known.
     """
-    found = _Declared.by(entities)
+    found = _Declarations.by(entities)
     return [] if found.incomplete else [name for name in names if name not in found.names]
 
 
@@ -39,7 +39,7 @@ class _TooDeepError(Exception):
     """Raised when entities are nested more deeply than the search descends."""
 
 
-class _Declared:
+class _Declarations:
     """The declarations found in entities.
 
     Attributes:
@@ -54,7 +54,7 @@ class _Declared:
         self.incomplete = False
 
     @classmethod
-    def by(cls, entities: Iterable[LaunchDescriptionEntity], *, conditional: bool = False) -> _Declared:
+    def by(cls, entities: Iterable[LaunchDescriptionEntity], *, conditional: bool = False) -> _Declarations:
         """Return the declarations of entities and their descendants."""
         found = cls()
         with suppress(_TooDeepError):

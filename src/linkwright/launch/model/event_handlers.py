@@ -57,7 +57,7 @@ class BaseEventHandler:
             f"{type(self).__name__}(matcher='{self.matcher_description}', handler='{self.handler_description}', "
             f"handle_once={self.handle_once})"
         )
-        return text, list(_listed(self.entities))
+        return text, list(_as_iterable(self.entities))
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
         """Set the event as a local of the context; subclasses return the entities to visit."""
@@ -184,7 +184,7 @@ def _reaction(given: Any, name: str) -> tuple[Callable[..., Any] | None, list[La
         raise TypeError(f"'{name}' must be launch actions or a function that returns them: {error}") from error
 
 
-def _listed(entities: Any) -> Iterable[Any]:
+def _as_iterable(entities: Any) -> Iterable[Any]:
     if entities is None:
         return ()
     return entities if isinstance(entities, Iterable) else (entities,)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from linkwright.launch.errors.user_code import DEEPEST, endless
+from linkwright.launch.errors.user_code import DEEPEST, endless_nesting_error
 from linkwright.launch.model.actions import EmitEvent, Log, RegisterEventHandler
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.model.entity import LaunchDescriptionEntity
@@ -32,7 +32,7 @@ def format_launch_description(description: LaunchDescription) -> str:
 def _tree(entities: Iterable[Any], depth: int = 1) -> list[str]:
     listed = list(entities)
     if depth > DEEPEST and listed:
-        raise endless(getattr(listed[0], "place", None))
+        raise endless_nesting_error(getattr(listed[0], "place", None))
     lines: list[str] = []
     for number, entity in enumerate(listed):
         last = number == len(listed) - 1

@@ -314,7 +314,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
 def _warn_without_model(error: LookupError) -> None:
     message = phrase("MoveIt's parameters have no URDF; nodes read it from the topic /robot_description")
     for found in getattr(error, "diagnostics", ()):
-        warning = found.but(severity=Severity.WARNING, notes=(*found.notes, Note(message)))
+        warning = found.with_changes(severity=Severity.WARNING, notes=(*found.notes, Note(message)))
         print_diagnostics([warning], sys.stderr)
 
 

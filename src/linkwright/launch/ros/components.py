@@ -159,7 +159,7 @@ class ComposableLifecycleNode(ComposableNode):
         """The node's name as substitutions, or its full name once it is loaded."""
         return super().node_name if self.__full_name is None else self.__full_name
 
-    def loaded(self, full_name: str) -> None:
+    def record_full_name(self, full_name: str) -> None:
         """Record the full name of the node after it was loaded."""
         self.__full_name = full_name
 
@@ -229,7 +229,7 @@ def _parameters(context: LaunchContext, full_name: str, sources: Iterable[Any]) 
     found: list[Any] = []
     for source in sources:
         if isinstance(source, FileSource):
-            values = _of_file(source, context, full_name)
+            values = _file_values(source, context, full_name)
         elif isinstance(source, tuple):
             values = dict([source])
         else:
@@ -240,7 +240,7 @@ def _parameters(context: LaunchContext, full_name: str, sources: Iterable[Any]) 
     return found
 
 
-def _of_file(source: FileSource, context: LaunchContext, full_name: str) -> dict[str, Any]:
+def _file_values(source: FileSource, context: LaunchContext, full_name: str) -> dict[str, Any]:
     """Return a file's values for a node.
 
     As in launch_ros, values under its own name override patterns.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, is_misspelt, phrase
 from linkwright.launch.errors.places import error_at, located
-from linkwright.launch.errors.unavailable import unavailable
+from linkwright.launch.errors.unavailable import mark_unavailable
 from linkwright.launch.model import events
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.markup.expose import expose_action
@@ -19,10 +19,10 @@ from linkwright.launch.ros.components import (
 )
 from linkwright.launch.ros.deprecated_arguments import with_deprecated_arguments
 from linkwright.launch.ros.executables import Executable, installed_executable
-from linkwright.launch.ros.left_out import drop_left_out, leave_out
-from linkwright.launch.ros.lifecycle import LifecycleEventManager, answered, autostarts
+from linkwright.launch.ros.left_out import record_skipped_node, remove_skipped_nodes
+from linkwright.launch.ros.lifecycle import LifecycleEventManager, autostarts, call_service
 from linkwright.launch.ros.lifecycle_events import ChangeState
-from linkwright.launch.ros.names import make_namespace_absolute, repeated_name
+from linkwright.launch.ros.names import make_namespace_absolute, repetition_warning
 from linkwright.launch.ros.node import Node
 from linkwright.launch.ros.parsing import Entities
 from linkwright.packages import is_installed, is_substitute
@@ -105,8 +105,8 @@ class LoadComposableNodes(Action):
         client = launcher.create_client("composition_interfaces/srv/LoadNode", f"{container}/_container/load_node")
         try:
             for description, request in requests:
-                drop_left_out(context, request)
-                response = await answered(context, client, request)
+                remove_skipped_nodes(context, request)
+                response = await call_service(context, client, request)
                 if response is None:
                     return
                 self._report(context, container, description, request, response)
@@ -127,17 +127,17 @@ class LoadComposableNodes(Action):
                 reason=foreign(response.error_message),
             )
             error = located(LinkwrightError(Diagnostic("LAUNCH139", problem)), description.place)
-            if _is_of_others(context.session.finder, request.package_name, request.plugin_name):
-                unavailable(error)
-                leave_out(context, request.node_name)
+            if _is_third_party(context.session.finder, request.package_name, request.plugin_name):
+                mark_unavailable(error)
+                record_skipped_node(context, request.node_name)
             context.session.could_not_start(description, error)
             return
-        remark = repeated_name(context, name)
+        remark = repetition_warning(context, name)
         if remark is not None:
             log.warning_line(container, remark)
         log.info_line(_LOGGER, f"Loaded node '{name}' in container '{container}'")
         if isinstance(description, ComposableLifecycleNode):
-            _manage(context, description, name)
+            _monitor_lifecycle_node(context, description, name)
 
 
 @expose_action("node_container")
@@ -223,7 +223,7 @@ class ComposableNodeContainer(Node):
         return self.__real
 
 
-def _is_of_others(finder: PackageFinder, package: str, plugin: str) -> bool:
+def _is_third_party(finder: PackageFinder, package: str, plugin: str) -> bool:
     """Return whether a component is third-party and not built here.
 
     A misspelt component of ours is not third-party.
@@ -246,9 +246,9 @@ def _described(entity: Entity, parser: Parser, *, optional: bool = False) -> lis
     return described
 
 
-def _manage(context: LaunchContext, description: ComposableLifecycleNode, full_name: str) -> None:
+def _monitor_lifecycle_node(context: LaunchContext, description: ComposableLifecycleNode, full_name: str) -> None:
     """Monitor the state of a loaded lifecycle node, and activate the node if ``autostart`` requests it."""
-    description.loaded(full_name)
+    description.record_full_name(full_name)
     LifecycleEventManager(description).setup_lifecycle_manager(context)
     if not autostarts(context, description.node_autostart):
         return

@@ -23,7 +23,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.hosting.plans import VIEWER, is_viewer
 from linkwright.launch.errors.exceptions import as_ros_error
-from linkwright.launch.errors.unavailable import unavailable
+from linkwright.launch.errors.unavailable import mark_unavailable
 from linkwright.packages import PackageFinder, PackageNotFoundError, install_prefix, is_installed, is_substitute
 from linkwright.packages.programs.child_python import python_command
 
@@ -144,7 +144,8 @@ def find_executable(finder: PackageFinder, package: str, name: str) -> Executabl
 
     Raises:
         LinkwrightError: LAUNCH131, with the searched paths and similar names. The error is also a LookupError, because
-            launch_ros raises PackageNotFoundError (PKG101). For third-party programs, it is marked as `unavailable`.
+            launch_ros raises PackageNotFoundError (PKG101). Errors about third-party programs are marked, see
+            `mark_unavailable`.
     """
     try:
         present = executables_of(finder, package)
@@ -229,7 +230,7 @@ def _no_package(finder: PackageFinder, package: str, name: str, error: PackageNo
     message = phrase("package '{package}' of node executable '{name}' not found", package=package, name=name)
     diagnostic = Diagnostic("LAUNCH131", message, notes=error.diagnostics[0].notes, hint=hint)
     missing = as_ros_error(KeyError(message), diagnostic)
-    return missing if is_misspelt(package, (*ours, *theirs)) else unavailable(missing)
+    return missing if is_misspelt(package, (*ours, *theirs)) else mark_unavailable(missing)
 
 
 def _no_executable(finder: PackageFinder, package: str, name: str, present: dict[str, Executable]) -> LinkwrightError:
@@ -256,7 +257,7 @@ def _no_executable(finder: PackageFinder, package: str, name: str, present: dict
     if hint is None:
         hint = phrase("it has: {present}", present=joined(present)) if present else _NO_EXECUTABLES
     error = _lookup_error(message, notes, hint)
-    return unavailable(error) if is_ours and not is_misspelt(name, present) else error
+    return mark_unavailable(error) if is_ours and not is_misspelt(name, present) else error
 
 
 def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:
@@ -274,9 +275,9 @@ def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:
             " that needs a C++ compiler and the ROS 2 libraries it uses",
             package=package,
         )
-        return unavailable(_lookup_error(message, (), advice))
+        return mark_unavailable(_lookup_error(message, (), advice))
     if not programs.is_complete and not is_misspelt(name, programs.names()):
-        return unavailable(_not_known_from_sources(package, name, share))
+        return mark_unavailable(_not_known_from_sources(package, name, share))
     notes = (Note(phrase("read the entry points and installed programs of {share}", share=display_path(share))),)
     hint = did_you_mean(name, programs.names())
     if hint is None and programs.names():

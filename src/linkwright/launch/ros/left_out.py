@@ -14,12 +14,12 @@ _MANAGER = "nav2_lifecycle_manager"
 _MANAGED = "node_names"
 
 
-def leave_out(context: LaunchContext, name: str) -> None:
+def record_skipped_node(context: LaunchContext, name: str) -> None:
     """Record a skipped node by its name without the namespace."""
     context.session.left_out.add(name)
 
 
-def without_left_out(context: LaunchContext, package: str, parameters: dict[str, Any]) -> dict[str, Any]:
+def without_skipped_nodes(context: LaunchContext, package: str, parameters: dict[str, Any]) -> dict[str, Any]:
     """Return the parameters of a node.
 
     For a lifecycle manager, they omit the nodes skipped so far.
@@ -29,10 +29,10 @@ def without_left_out(context: LaunchContext, package: str, parameters: dict[str,
     return {**parameters, _MANAGED: _present(context, parameters[_MANAGED])}
 
 
-def drop_left_out(context: LaunchContext, request: Any) -> None:
+def remove_skipped_nodes(context: LaunchContext, request: Any) -> None:
     """Remove skipped nodes from a request to load a lifecycle manager.
 
-    See `without_left_out`.
+    See `without_skipped_nodes`.
     """
     if request.package_name != _MANAGER:
         return

@@ -82,14 +82,14 @@ class LifecycleEventManager:
     async def _change_state(self, context: LaunchContext, transition: int) -> None:
         request = self._client.srv_type.Request()
         request.transition.id = transition
-        response = await answered(context, self._client, request)
+        response = await call_service(context, self._client, request)
         if response is not None and not response.success:
             name = TRANSITIONS[transition]
             text = f"Failed to make transition '{name}' for LifecycleNode '{self.node_name}'"
             context.session.log.error_line("launch_ros.actions.lifecycle_node", text)
 
 
-async def answered(context: LaunchContext, client: Any, request: Any) -> Any:
+async def call_service(context: LaunchContext, client: Any, request: Any) -> Any:
     """Wait for a service, call it and return its response, or None if the launch ends first."""
     future = client.call_async(request)
     while not future.done():
@@ -99,11 +99,11 @@ async def answered(context: LaunchContext, client: Any, request: Any) -> Any:
             context.session.log.warning_line("launch_ros", text)
             client.remove_pending_request(future)
             return None
-        await _done_or_time(future)
+        await _wait_briefly(future)
     return future.result()
 
 
-async def _done_or_time(future: Any) -> None:
+async def _wait_briefly(future: Any) -> None:
     """Wait for a future for a short time."""
     loop = asyncio.get_running_loop()
     woken = loop.create_future()

@@ -69,7 +69,7 @@ def get_node_name_count(context: Any, node_name: str) -> int:
     return _counts(context).get(node_name, 0)
 
 
-def repeated_name(context: Any, node_name: str) -> str | None:
+def repetition_warning(context: Any, node_name: str) -> str | None:
     """Record the start of a node, and return a warning or None.
 
     The warning is about another node with the same name.

@@ -25,7 +25,7 @@ from linkwright.launch.model.substitution import (
 )
 from linkwright.launch.ros.deprecated_arguments import with_deprecated_arguments
 from linkwright.launch.ros.executables import Executable, find_executable, is_hosted
-from linkwright.launch.ros.left_out import leave_out, without_left_out
+from linkwright.launch.ros.left_out import record_skipped_node, without_skipped_nodes
 from linkwright.launch.ros.names import (
     check_name,
     check_namespace,
@@ -33,7 +33,7 @@ from linkwright.launch.ros.names import (
     make_namespace_absolute,
     normalize_remap_rules,
     prefix_namespace,
-    repeated_name,
+    repetition_warning,
 )
 from linkwright.launch.ros.node_extensions import node_extensions
 from linkwright.launch.ros.parameter_lists import normalize_parameters
@@ -111,7 +111,7 @@ class Node(ExecuteProcess):
             command += ["--ros-args", *_listed(ros_arguments)]
         command.append("--ros-args")
         if name is not None:
-            command += ["-r", _Assigned("name", lambda: f"__node:={self.__expanded_node_name}")]
+            command += ["-r", _DeferredWord("name", lambda: f"__node:={self.__expanded_node_name}")]
         super().__init__(cmd=command, name=exec_name, **kwargs)
         self.__package = package
         self.__node_executable = executable
@@ -206,7 +206,7 @@ class Node(ExecuteProcess):
             self.cmd.extend(normalize_to_list_of_substitutions(word) for word in added)
             process_name = self._run(context, package, executable)
         if self.is_node_name_fully_specified():
-            remark = repeated_name(context, self.node_name)
+            remark = repetition_warning(context, self.node_name)
             if remark is not None:
                 context.session.log.warning_line(process_name, remark)
         return None
@@ -314,7 +314,7 @@ class Node(ExecuteProcess):
     def __extend_command(self) -> None:
         words: list[Any] = []
         if self.__expanded_node_namespace != self.UNSPECIFIED_NODE_NAMESPACE:
-            words += ["-r", _Assigned("ns", lambda: f"__ns:={self.__expanded_node_namespace}")]
+            words += ["-r", _DeferredWord("ns", lambda: f"__ns:={self.__expanded_node_namespace}")]
         _ = self.__expanded_parameter_arguments
         for argument, is_file in self.__parameter_words or ():
             words += ["--params-file" if is_file else "-p", argument]
@@ -360,7 +360,7 @@ class Node(ExecuteProcess):
             executable,
             name,
             namespace,
-            without_left_out(context, package, self.__node_parameters.values(context, full_name)),
+            without_skipped_nodes(context, package, self.__node_parameters.values(context, full_name)),
             self.__expanded_remappings or [],
             arguments,
             self.viewer_config(context),
@@ -387,7 +387,7 @@ class Node(ExecuteProcess):
             return self._executable(context.session.finder, package, executable).command
         except LinkwrightError as error:
             if is_unavailable(error):
-                leave_out(context, executable if self.__node_name is None else self.__expanded_node_name)
+                record_skipped_node(context, executable if self.__node_name is None else self.__expanded_node_name)
             raise located(error, self.place) from error
 
     def _executable(self, finder: PackageFinder, package: str, executable: str) -> Executable:
@@ -404,7 +404,7 @@ class Node(ExecuteProcess):
         return workspace_environment(context.session.finder, super()._environment(context))
 
 
-class _Assigned(Substitution):
+class _DeferredWord(Substitution):
     """A word of the command line that is known only when the action starts the node.
 
     Args:

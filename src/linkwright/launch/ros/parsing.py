@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
-from linkwright.launch.errors.places import error_at, reading
+from linkwright.launch.errors.places import error_at, reading_markup_at
 from linkwright.launch.model.markup.entity import Entity, parse_texts
 from linkwright.launch.ros.parameter_files import ParameterFile
 from linkwright.launch.ros.parameter_values import ParameterValue
@@ -98,7 +98,7 @@ def _nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
             raise _wrong(tag, phrase("nested parameters and type attributes are mutually exclusive"))
         if value is not None:
             try:
-                with reading(tag.place):
+                with reading_markup_at(tag.place):
                     found[name] = ParameterValue(parser.parse_if_substitutions(value), value_type=data_type)
             except (TypeError, ValueError) as error:
                 raise _not_of_type(tag, value, identifier, error) from error

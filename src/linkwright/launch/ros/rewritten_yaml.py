@@ -28,7 +28,7 @@ _POSE = dict.fromkeys(("x", "y", "z", "roll", "pitch", "yaw"), 0.0)
 _PARAMETERS = "ros__parameters"
 
 
-class _OfFile(Substitution):
+class _YamlFileSubstitution(Substitution):
     """The base class of substitutions on a YAML file."""
 
     def __init__(self, source_file: SomeSubstitutionsType) -> None:
@@ -73,7 +73,7 @@ class _OfFile(Substitution):
             raise error_at(self.place, "LAUNCH152", message, ros_error=error) from error
 
 
-class RewrittenYaml(_OfFile):
+class RewrittenYaml(_YamlFileSubstitution):
     """The path of a new parameter file, which is a copy with replaced values.
 
     Args:
@@ -183,7 +183,7 @@ def _add(content: Any, path: list[str], value: Any) -> None:
     content[last] = value
 
 
-class ReplaceString(_OfFile):
+class ReplaceString(_YamlFileSubstitution):
     """The path of a new file, which is a copy with replaced texts.
 
     Args:
@@ -221,7 +221,7 @@ class ReplaceString(_OfFile):
         return _write_file(context, text, path.suffix)
 
 
-class HasNodeParams(_OfFile):
+class HasNodeParams(_YamlFileSubstitution):
     """Whether a parameter file has parameters for a node: ``True`` or ``False``."""
 
     def __init__(self, source_file: SomeSubstitutionsType, node_name: str) -> None:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-class _OfLaunchRos(DeclaredSubstitution):
+class _LaunchRosSubstitution(DeclaredSubstitution):
     """The base class of the substitutions of ``launch_ros``."""
 
     @classmethod
@@ -35,7 +35,7 @@ class _OfLaunchRos(DeclaredSubstitution):
         return AttributeError(f"{cls.__name__} substitution expects {expected}, and it is given {given}")
 
 
-class FindPackage(_OfLaunchRos, shown="{kind}(pkg={package})"):
+class FindPackage(_LaunchRosSubstitution, shown="{kind}(pkg={package})"):
     """The base class of substitutions for a folder of a package.
 
     The operator ``/`` appends a path.
@@ -75,7 +75,9 @@ class FindPackageShare(FindPackage, tag="find-pkg-share"):
         return str(current_finder().share(package_name))
 
 
-class ExecutableInPackage(_OfLaunchRos, tag="exec-in-pkg", shown="ExecInPkg(pkg={package}, exec={executable})"):
+class ExecutableInPackage(
+    _LaunchRosSubstitution, tag="exec-in-pkg", shown="ExecInPkg(pkg={package}, exec={executable})"
+):
     """The path of an executable of a package."""
 
     executable: Texts = Texts()
@@ -96,7 +98,7 @@ class ExecutableInPackage(_OfLaunchRos, tag="exec-in-pkg", shown="ExecInPkg(pkg=
             raise located(error, self.place) from error
 
 
-class ParameterSubstitution(_OfLaunchRos, tag="param", shown="Parameter(name={name})"):
+class ParameterSubstitution(_LaunchRosSubstitution, tag="param", shown="Parameter(name={name})"):
     """The value of a parameter that `SetParameter` set in the scope."""
 
     name: Texts = Texts()

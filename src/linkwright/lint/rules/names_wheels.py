@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from math import cos, radians
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, Span, phrase
-from linkwright.geometry.shapes import Placement, placement, turned
+from linkwright.geometry.shapes import Placement, placement, rotated
 from linkwright.geometry.single import dot, length, subtracted
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
@@ -48,7 +48,7 @@ def wheels(subject: Subject, type_of_joint: str = "continuous") -> Iterator[Whee
     for joint in robot.joints.values():
         if joint.type == type_of_joint and is_wheel(joint) and joint.child in frames:
             frame = frames[joint.child].seen_from(base)
-            axis = turned(frame.rotation, joint.axis)
+            axis = rotated(frame.rotation, joint.axis)
             size = length(axis)
             if size > 0:
                 unit = (axis[0] / size, axis[1] / size, axis[2] / size)
@@ -378,7 +378,7 @@ def _disc_axes(link: Link) -> Iterator[Vector3]:
     for part in parts:
         shape = part.geometry
         if isinstance(shape, Cylinder) and 0 < shape.length < 1.5 * shape.radius:
-            yield turned(placement(part.origin).rotation, (0.0, 0.0, 1.0))
+            yield rotated(placement(part.origin).rotation, (0.0, 0.0, 1.0))
 
 
 def _rolls(wheel: Wheel) -> bool:

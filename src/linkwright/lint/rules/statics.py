@@ -12,7 +12,7 @@ from math import hypot, sqrt
 
 from linkwright.diagnostics import Diagnostic, Note, Span, phrase
 from linkwright.geometry.polygon import turn
-from linkwright.geometry.shapes import Placement, placement, turned
+from linkwright.geometry.shapes import Placement, placement, rotated
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.names_wheels import joints_above, wheels
@@ -130,7 +130,7 @@ def _lifted_wheels(subject: Subject) -> set[str]:
         for above in joints_above(robot, joint):
             if above.type == "fixed" or above.child not in frames:
                 continue
-            level = hypot(*turned(frames[above.child].rotation, above.axis)[:2])
+            level = hypot(*rotated(frames[above.child].rotation, above.axis)[:2])
             if (level > _LEVEL) is (above.type != "prismatic"):
                 found.add(joint.child)
     return found

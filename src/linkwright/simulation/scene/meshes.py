@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.decomposition import convex_pieces, thickened
-from linkwright.geometry.mesh_files import BadMeshError, beside, declared_triangles
+from linkwright.geometry.mesh_files import BadMeshError, declared_triangles, file_resolver
 from linkwright.geometry.mesh_parts import MeshPart, Triangles, read_parts, read_png
 from linkwright.geometry.meshes import read_mesh, unreadable
 from linkwright.geometry.polygon import triangulated
@@ -239,7 +239,7 @@ class MeshLibrary:
     def _parts(self, shape: Mesh, path: Path) -> list[MeshPart]:
         _bounded(path, declared_triangles(path) or 0)
         try:
-            parts = read_parts(path, resolver=beside(str(path)))
+            parts = read_parts(path, resolver=file_resolver(str(path)))
         except BadMeshError as error:
             raise unreadable(path, error.why) from None
         _bounded(path, sum(len(part.triangles.indices) // 3 for part in parts))
@@ -323,7 +323,7 @@ class MeshLibrary:
         self._reported.add(found.message)
         span = element.span() if element is not None else None
         source = element.source if element is not None else None
-        self.diagnostics.append(found.but(span=span, source=source))
+        self.diagnostics.append(found.with_changes(span=span, source=source))
 
 
 def _bounded(path: Path, count: int) -> None:

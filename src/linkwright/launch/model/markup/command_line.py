@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from linkwright.diagnostics import phrase
-from linkwright.launch.errors.places import error_at, reading
+from linkwright.launch.errors.places import error_at, reading_markup_at
 from linkwright.launch.model.substitution import Substitution, TextSubstitution
 
 _ESCAPED_IN_DOUBLE_QUOTES = '"\\'
@@ -24,10 +24,10 @@ def parse_command_line(text: str, parser: Any) -> list[list[Substitution]]:
     parts: list[Substitution] = parser.parse_substitution(text)
     for part in parts:
         if isinstance(part, TextSubstitution):
-            with reading(part.place):
-                divided.take(part.text)
+            with reading_markup_at(part.place):
+                divided.add_text(part.text)
         else:
-            divided.insert(part)
+            divided.add_substitution(part)
     if divided.quote:
         ros_error = ValueError("No closing quotation")
         message = phrase(
@@ -50,13 +50,13 @@ class _Words:
         self._text = ""
         self._began = False
 
-    def insert(self, part: Substitution) -> None:
+    def add_substitution(self, part: Substitution) -> None:
         """Add a substitution to the current word."""
         self._end_text()
         self._word.append(part)
         self._began = True
 
-    def take(self, text: str) -> None:
+    def add_text(self, text: str) -> None:
         """Add literal text, which may end the current word and start others."""
         characters = iter(text)
         for character in characters:

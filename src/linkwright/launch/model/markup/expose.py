@@ -51,7 +51,7 @@ def expose_impl(name: str, parse_methods_map: dict[str, Any], exposed_type: str)
         taken = parse_methods_map.get(name)
         if taken is not None and not _is_same(getattr(taken, "__wrapped__", taken), method):
             raise RuntimeError(f"Two {exposed_type} parsing methods exposed with the same name: [{name}].")
-        parse_methods_map[name] = _reading_all(method) if exposed_type == "action" else method
+        parse_methods_map[name] = _with_completeness_check(method) if exposed_type == "action" else method
         return exposed
 
     return decorate
@@ -81,7 +81,7 @@ def _parse_method(exposed: Any, name: str, exposed_type: str) -> Any:
     )
 
 
-def _reading_all(method: Any) -> Any:
+def _with_completeness_check(method: Any) -> Any:
     """Wrap a parse function in a check that it has read the entire tag."""
 
     @functools.wraps(method)

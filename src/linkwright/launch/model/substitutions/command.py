@@ -142,7 +142,7 @@ def _words_of_xacro(words: list[str]) -> list[str] | None:
 def _expand(context: LaunchContext, call: XacroCall) -> str:
     descriptions = context.descriptions or Descriptions(current_finder())
     text = descriptions.expand(call)
-    context.remark(call, descriptions.warnings_of(call))
+    context.report_findings(call, descriptions.warnings_of(call))
     return text
 
 

@@ -105,7 +105,7 @@ class OrSubstitution(AndSubstitution, tag="or"):
         return _text(any(self._truths(context)))
 
 
-class _Several(Substitution):
+class _ManyValues(Substitution):
     """The base class of substitutions that combine any number of values."""
 
     def __init__(self, *args: SomeSubstitutionsType) -> None:
@@ -136,7 +136,7 @@ expose_substitution("any")(_parsed_any)
 expose_substitution("all")(_parsed_all)
 
 
-class AnySubstitution(_Several):
+class AnySubstitution(_ManyValues):
     """Whether any of several values is true, as ``true`` or ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
@@ -144,7 +144,7 @@ class AnySubstitution(_Several):
         return _text(any(self._truths(context)))
 
 
-class AllSubstitution(_Several):
+class AllSubstitution(_ManyValues):
     """Whether all of several values are true, as ``true`` or ``false``."""
 
     def perform(self, context: LaunchContext) -> str:

@@ -44,13 +44,13 @@ class StringJoinSubstitution(DeclaredSubstitution, tag="string-join", shown="Str
         return delimiter.join(perform_substitutions(context, part) for part in self.substitutions)
 
 
-class _OfOneText(DeclaredSubstitution):
+class _OneTextSubstitution(DeclaredSubstitution):
     """The base class of substitutions with a single text."""
 
     value: Texts = Texts()
 
 
-class StringStripSubstitution(_OfOneText, tag="string-strip"):
+class StringStripSubstitution(_OneTextSubstitution, tag="string-strip"):
     """A text without leading and trailing whitespace."""
 
     def perform(self, context: LaunchContext) -> str:
@@ -58,7 +58,7 @@ class StringStripSubstitution(_OfOneText, tag="string-strip"):
         return perform_substitutions(context, self.value).strip()
 
 
-class IsEmptySubstitution(_OfOneText, tag="is-empty"):
+class IsEmptySubstitution(_OneTextSubstitution, tag="is-empty"):
     """Whether a text is empty, as ``true`` or ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
@@ -66,7 +66,7 @@ class IsEmptySubstitution(_OfOneText, tag="is-empty"):
         return "false" if perform_substitutions(context, self.value) else "true"
 
 
-class NotEmptySubstitution(_OfOneText, tag="not-empty"):
+class NotEmptySubstitution(_OneTextSubstitution, tag="not-empty"):
     """Whether a text is not empty, as ``true`` or ``false``."""
 
     def perform(self, context: LaunchContext) -> str:

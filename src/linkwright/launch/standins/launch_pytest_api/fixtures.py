@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from linkwright.launch.engine.service import LaunchService, ServiceOfProcesses
+from linkwright.launch.engine.service import LaunchService, ProcessLaunchService
 from linkwright.launch.model.context import LaunchContext
 
 _OPTIONS = "_launch_options"
@@ -113,7 +113,7 @@ def _event_loop() -> Iterator[asyncio.AbstractEventLoop]:
 
 def _launch_service(event_loop: asyncio.AbstractEventLoop) -> Iterator[LaunchService]:  # noqa: ARG001 - to outlast it
     """Yield the service that launches the description."""
-    service = ServiceOfProcesses()
+    service = ProcessLaunchService()
     yield service
     finish(service, "when the fixture launch_service ended")
 

@@ -12,7 +12,7 @@ import unittest
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from linkwright.launch.engine.service import LaunchService, ServiceOfProcesses
+from linkwright.launch.engine.service import LaunchService, ProcessLaunchService
 from linkwright.launch.frontend.include import IncludeLaunchDescription
 from linkwright.launch.frontend.sources import LaunchDescriptionSource
 from linkwright.launch.model import events
@@ -50,7 +50,7 @@ class _RunnerWorker:
         self._test_run = test_run
         self._preamble = list(test_run_preamble)
         self._arguments = dict(parse_launch_arguments(launch_file_arguments))
-        self._launch_service: LaunchService = ServiceOfProcesses(debug=debug)
+        self._launch_service: LaunchService = ProcessLaunchService(debug=debug)
         self._processes_launched = threading.Event()
         self._tests_completed = threading.Event()
         self._results: Any = None
@@ -67,7 +67,7 @@ class _RunnerWorker:
         run = self._test_run
         description, context = run.normalized_test_description(ready_fn=self._processes_launched.set)
         self._bind({**context, **run.param_args})
-        self._launch_service.include_launch_description(self._wrapped(description))
+        self._launch_service.include_launch_description(self._with_recorders(description))
         threading.Thread(target=self._run_test, name="test_runner_thread", daemon=True).start()
         self._launch_service.run(shutdown_when_idle=not run.markers.get("keep_alive", False))
         if not self._tests_completed.is_set():
@@ -94,7 +94,7 @@ class _RunnerWorker:
         self._test_run.bind(self._test_run.pre_shutdown_tests, beside, {**context, **beside})
         self._test_run.bind(self._test_run.post_shutdown_tests, after, {**context, **after})
 
-    def _wrapped(self, description: LaunchDescription) -> LaunchDescription:
+    def _with_recorders(self, description: LaunchDescription) -> LaunchDescription:
         """Return a description that includes the given one, and records its processes.
 
         The arguments of the launch are passed to it.
