@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import sys
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from pathlib import Path
 
 import pytest
 import pytest_asyncio
 from lsprotocol import types
-from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
+from pygls.lsp.client import LanguageClient
 
 from tests.waiting import SECONDS
 
@@ -54,8 +54,13 @@ class Editor:
 
     def __init__(self, client: LanguageClient, folder: Path) -> None:
         self.client = client
+        self.diagnostics: dict[str, Sequence[types.Diagnostic]] = {}
         self.folder = folder
         self._versions: dict[str, int] = {}
+
+        @client.feature(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
+        def _(published: types.PublishDiagnosticsParams) -> None:
+            self.diagnostics[published.uri] = published.diagnostics
 
     def uri(self, name: str) -> str:
         """Return the URI of a file."""
@@ -87,13 +92,13 @@ class Editor:
 
     def codes(self, name: str) -> list[str]:
         """Return the codes of the current findings about a file."""
-        return [str(diagnostic.code) for diagnostic in self.client.diagnostics.get(self.uri(name), ())]
+        return [str(diagnostic.code) for diagnostic in self.diagnostics.get(self.uri(name), ())]
 
     async def until(self, name: str, *codes: str) -> list[types.Diagnostic]:
         """Wait until a file has exactly these findings, and return them."""
         for _ in range(int(SECONDS / 0.02)):
-            if self.uri(name) in self.client.diagnostics and sorted(self.codes(name)) == sorted(codes):
-                return list(self.client.diagnostics[self.uri(name)])
+            if self.uri(name) in self.diagnostics and sorted(self.codes(name)) == sorted(codes):
+                return list(self.diagnostics[self.uri(name)])
             await asyncio.sleep(0.02)
         raise AssertionError(f"{name} has {self.codes(name)}")
 
@@ -116,14 +121,16 @@ def package(tmp_path: Path) -> Path:
 
 @pytest_asyncio.fixture
 async def editor(package: Path) -> AsyncIterator[Editor]:
-    client = make_test_lsp_client()
+    client = LanguageClient("test", "1")
+    editor = Editor(client, package)
     await client.start_io(sys.executable, "-m", "linkwright", "lsp")
-    await client.initialize_session(
+    await client.initialize_async(
         types.InitializeParams(
-            capabilities=client_capabilities("visual-studio-code"),
-            workspace_folders=[types.WorkspaceFolder(package.as_uri(), package.name)],
+            types.ClientCapabilities(), workspace_folders=[types.WorkspaceFolder(package.as_uri(), package.name)]
         )
     )
-    yield Editor(client, package)
-    await client.shutdown_session()
+    client.initialized(types.InitializedParams())
+    yield editor
+    await client.shutdown_async(None)
+    client.exit(None)
     await client.stop()

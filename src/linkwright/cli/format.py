@@ -43,7 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--range", metavar="FIRST-LAST", type=_lines, help="change only these lines, counted from 1, of a single file"
     )
     parser.add_argument(
-        "--stdin-filename", metavar="NAME", help="the name of the text on standard input; the settings of this file apply"
+        "--stdin-filename", metavar="NAME", help="the file name of standard input, whose settings apply"
     )
 
 
