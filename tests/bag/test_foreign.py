@@ -99,7 +99,7 @@ def test_topics_of_ros_2_are_read_and_the_others_are_named(tmp_path: Path, kind:
         assert len(read) == 5
         finding = bag.findings[-1]
         assert finding.code == "BAG112"
-        assert finding.message.endswith("none of ROS 2's: /pose (protobuf), /thing (json)")
+        assert finding.message.endswith("not ROS 2 messages: /pose (protobuf), /thing (json)")
         assert len(bag.findings) == (2 if kind == "cut off" else 1)
         with pytest.raises(LinkwrightError, match="no topic '/pose'"):
             bag.messages(["/pose"])
@@ -111,7 +111,7 @@ def test_a_file_without_a_topic_of_ros_2_is_one_error(tmp_path: Path, capsys: py
     output = capsys.readouterr()
     assert output.out == ""
     assert "error[BAG102]" in output.err
-    assert "is not a recording of ROS 2: /pose (protobuf), /thing (json)" in output.err
+    assert "is not a ROS 2 recording: /pose (protobuf), /thing (json)" in output.err
 
 
 def test_a_recording_of_ros_1_says_how_it_becomes_one_of_ros_2(tmp_path: Path) -> None:

@@ -66,13 +66,13 @@ def test_of_a_packed_file_that_was_cut_off_what_is_whole_is_read(tmp_path: Path)
 def test_what_is_wrong_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     plain = tmp_path / "plain.mcap.zstd"
     plain.write_text("not compressed")
-    with pytest.raises(LinkwrightError, match="it does not begin as a file of zstd does"):
+    with pytest.raises(LinkwrightError, match="it does not begin with the zstd header"):
         BagReader(plain)
     (file,) = recorded(tmp_path / "bag", StoragePlugin.SQLITE3, CompressionMode.FILE, 20_000).glob("*.zstd")
     cut = tmp_path / "cut.db3.zstd"
     cut.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
     assert main(["bag", "info", str(cut)]) == 1
-    assert "its content is damaged or cut off" in capsys.readouterr().err
+    assert "its content is damaged or truncated" in capsys.readouterr().err
 
 
 def test_files_that_the_metadata_name_and_that_are_missing_are_named(tmp_path: Path) -> None:

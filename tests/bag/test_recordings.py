@@ -205,7 +205,7 @@ def test_a_part_in_which_nothing_was_written_is_left_out(tmp_path: Path) -> None
 def test_files_of_other_names_are_one_recording_where_all_are_named(tmp_path: Path) -> None:
     files = parts(tmp_path, "mcap", ["morning", "noon"])
     with pytest.raises(
-        LinkwrightError, match=r"not of one recording, by their names: morning.mcap, noon.mcap"
+        LinkwrightError, match=r"different recordings according to their names: morning.mcap, noon.mcap"
     ) as caught:
         BagReader(tmp_path / "drive")
     (diagnostic,) = caught.value.diagnostics
@@ -268,7 +268,7 @@ def test_nothing_there(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_is_no_recording(tmp_path: Path) -> None:
-    with pytest.raises(LinkwrightError, match=r"neither a metadata\.yaml nor files"):
+    with pytest.raises(LinkwrightError, match=r"neither a metadata\.yaml nor recording files"):
         BagReader(tmp_path)
 
 
@@ -428,12 +428,12 @@ def test_wrong_overrides_are_told(document: object, message: str) -> None:
     ("name", "beginning", "message"),
     [
         ("a.mcap", b"", "the file is empty"),
-        ("a.mcap", b"no recording", "it does not begin as a file of MCAP does"),
-        ("a.db3", b"no recording", "it does not begin as a file of SQLite does"),
-        ("a.mcap", b"#ROSBAG V2.0\n", "it is of ROS 1"),
-        ("a.mcap", b"\x89MCAP0\r\n\x01", "it is an MCAP file that is damaged or cut off"),
+        ("a.mcap", b"no recording", "it does not begin with the MCAP header"),
+        ("a.db3", b"no recording", "it does not begin with the SQLite header"),
+        ("a.mcap", b"#ROSBAG V2.0\n", "it is a ROS 1 recording"),
+        ("a.mcap", b"\x89MCAP0\r\n\x01", "it is a damaged or truncated MCAP file"),
         ("a.mcap", b"\n<!DOCTYPE html><html>", "it is a web page"),
-        ("a.mcap", b"version https://git-lfs.github.com/spec/v1\n", "it is a pointer of Git LFS"),
+        ("a.mcap", b"version https://git-lfs.github.com/spec/v1\n", "it is a Git LFS pointer"),
         ("a.mcap", b"\x28\xb5\x2f\xfd1234", "it is compressed with zstd"),
     ],
 )

@@ -77,7 +77,7 @@ def test_a_process_with_neither_says_so_and_goes_on(installed):
 def test_settings_are_those_of_the_transport_that_is_chosen():
     wrong = {"ZENOH_CONFIG_OVERRIDE": "mode"}
     check_settings(wrong)
-    with pytest.raises(LinkwrightError, match="is not a setting of Zenoh"):
+    with pytest.raises(LinkwrightError, match="is not a Zenoh setting"):
         check_settings({**ASKED, **wrong})
     for variables in ({}, ASKED):
         with pytest.raises(LinkwrightError, match="is not a DDS domain"):

@@ -37,7 +37,7 @@ def test_the_robot_is_found_with_the_variables_of_the_page(robot, monkeypatch) -
     robot()
     assert "/from_ros" in run("topic list")[0].splitlines()
     printed, errors, status = run("doctor")
-    assert (status, printed.startswith("All is well: 1 node, ")) == (0, True), errors
+    assert (status, printed.startswith("No problems found: 1 node, ")) == (0, True), errors
 
 
 @pytest.mark.parametrize(("transports", "found"), [("SHM", False), ("LARGE_DATA", False), ("DEFAULT", True)])

@@ -69,7 +69,7 @@ class PlayerServices:
 
     def _play(self, _: Any, response: Any) -> Any:
         """Refuse to play, as rosbag2 does while it plays; when it does not, the program has ended."""
-        self._logger.warning("Asked to play while playing; nothing is done")
+        self._logger.warning("The recording is already playing: the request is ignored")
         response.success = False
         return response
 
@@ -93,5 +93,5 @@ class PlayerServices:
 
     def _is_paused_for(self, what: str) -> bool:
         if not self._player.paused:
-            self._logger.warning(f"Asked to {what} while not paused; nothing is done")
+            self._logger.warning(f"Asked to {what} while not paused: the request is ignored")
         return self._player.paused

@@ -47,7 +47,7 @@ def untyped(bag: BagReader) -> list[Diagnostic]:
     if not names:
         return []
     message = phrase(
-        "topics of '{path}' are left out, for the definitions of their types are missing or broken: {topics}",
+        "topics of '{path}' are left out because the definitions of their types are missing or invalid: {topics}",
         path=bag.path.name,
         topics=", ".join(sorted(names)),
     )

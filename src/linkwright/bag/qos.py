@@ -143,7 +143,7 @@ def overrides_of(document: object, source: str) -> dict[str, QoSProfile]:
         raise _wrong(
             source,
             phrase("it does not map topics to policies"),
-            phrase("write a topic, and below it `reliability: ...`"),
+            phrase("write the topic's name, and below it a policy such as `reliability: reliable`"),
         )
     return {str(topic): _profile(policies, str(topic), source) for topic, policies in document.items()}
 
@@ -155,7 +155,7 @@ def _profile(policies: Mapping[str, Any], topic: str, source: str) -> QoSProfile
             kind = _POLICIES[name]
             if str(value).upper() not in kind.__members__:
                 known = kind.short_keys()
-                hint = did_you_mean(str(value).lower(), known) or phrase("available: {names}", names=joined(known))
+                hint = did_you_mean(str(value).lower(), known) or phrase("choose from {names}", names=joined(known))
                 raise _wrong(
                     source,
                     phrase("'{value}' is not a valid {name} (topic '{topic}')", value=value, name=name, topic=topic),

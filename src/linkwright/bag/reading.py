@@ -111,11 +111,9 @@ class BagReader:
         ]
         if self._others and not self.topics:
             self.close()
-            message = phrase(
-                "'{path}' is not a recording of ROS 2: {topics}", path=self._called, topics=self._left_out()
-            )
+            message = phrase("'{path}' is not a ROS 2 recording: {topics}", path=self._called, topics=self._left_out())
             raise LinkwrightError(
-                Diagnostic("BAG102", message, hint=phrase("in brackets: how messages of the topic are written"))
+                Diagnostic("BAG102", message, hint=phrase("the brackets show the encoding of each topic's messages"))
             )
 
     def _opened(self, targets: Sequence[Path]) -> Reader:
@@ -180,13 +178,13 @@ class BagReader:
             found.append(Diagnostic("BAG113", message, severity=Severity.WARNING, hint=hint))
         if self._is_cut_off:
             message = phrase(
-                "recording '{path}' has no end: the recorder was killed, or a copy was cut off", path=self._called
+                "recording '{path}' is truncated: the recorder was killed, or a copy was interrupted", path=self._called
             )
-            hint = phrase("its complete records are read; everything after them is lost")
+            hint = phrase("only its complete records are read; the rest is lost")
             found.append(Diagnostic("BAG109", message, severity=Severity.WARNING, hint=hint))
         if self._others:
             message = phrase(
-                "topics of '{path}' are left out, for their messages are none of ROS 2's: {topics}",
+                "topics of '{path}' are left out because their messages are not ROS 2 messages: {topics}",
                 path=self._called,
                 topics=self._left_out(),
             )
@@ -346,15 +344,19 @@ def _storage_targets(path: Path, called: str) -> list[Path]:
     if len(files) == 1 or are_of_one_recording(files):
         return files
     if not files:
-        message = phrase("'{path}' is not a recording: it has neither a metadata.yaml nor files of one", path=called)
+        message = phrase(
+            "'{path}' is not a recording: it contains neither a metadata.yaml nor recording files", path=called
+        )
         raise LinkwrightError(Diagnostic("BAG102", message))
     found = ", ".join(file.name for file in files)
     message = phrase(
-        "the files in '{path}' are not of one recording, by their names: {found}", path=called, found=found
+        "the files in '{path}' belong to different recordings according to their names: {found}",
+        path=called,
+        found=found,
     )
     hint = phrase(
-        "name one of them; several are one recording where their names end with _0, _1, _2, or where all are named: "
-        "linkwright view FILE FILE ..."
+        "name one of them; files belong to one recording if their names end with _0, _1, _2, or if "
+        "you name them all: linkwright view FILE FILE ..."
     )
     raise LinkwrightError(Diagnostic("BAG102", message, hint=hint))
 

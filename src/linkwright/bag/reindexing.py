@@ -28,7 +28,7 @@ def reindex(folder: Path) -> None:
     files = [path for path in folder.iterdir() if storage_of(path) is not None] if folder.is_dir() else []
     if len(files) != 1 and not are_of_one_recording(files):
         message = phrase("there are no files of a recording in '{path}'", path=display_path(folder))
-        hint = phrase("their names end with a number and .mcap or .db3: drive_0.mcap, drive_1.mcap")
+        hint = phrase("name a folder whose files end with a number and .mcap or .db3, such as drive_0.mcap")
         raise LinkwrightError(Diagnostic("BAG117", message, hint=hint))
     found = []
     for file in in_order(files):
@@ -38,7 +38,7 @@ def reindex(folder: Path) -> None:
         write_metadata(folder, found)
     except OSError as error:
         reason = foreign(error.strerror or str(error))
-        message = phrase("recording '{path}' cannot be made: {reason}", path=display_path(folder), reason=reason)
+        message = phrase("recording '{path}' cannot be created: {reason}", path=display_path(folder), reason=reason)
         raise LinkwrightError(Diagnostic("BAG105", message)) from error
 
 

@@ -135,10 +135,12 @@ def _entries(path: str | Path) -> list[Mapping[str, Any]]:
         raise _unusable(str(path), foreign(reason or str(error))) from error
     entries = document.get("output_bags") if isinstance(document, dict) else None
     if not isinstance(entries, list) or not entries:
-        raise _unusable(str(path), phrase("it needs the key 'output_bags' with a list of recordings to be made"))
+        raise _unusable(str(path), phrase("it needs the key 'output_bags' with a list of the recordings to write"))
     for entry in entries:
         if not isinstance(entry, dict) or not isinstance(entry.get("uri"), str):
-            raise _unusable(str(path), phrase("each of 'output_bags' needs the key 'uri' with a folder to be made"))
+            raise _unusable(
+                str(path), phrase("each entry of 'output_bags' needs the key 'uri' with the folder to create")
+            )
     return entries
 
 

@@ -34,7 +34,7 @@ def verdict_on(path: Path, error: Exception) -> Verdict:
         return _ros1()
     if missing := _missing_files(path):
         names = ", ".join(missing)
-        hint = phrase("copy them too; each existing file can be opened by its own name")
+        hint = phrase("copy the missing files, or open an existing file by its name")
         return Verdict(phrase("files that its metadata.yaml names are missing: {names}", names=names), hint)
     try:
         with path.open("rb") as file:
@@ -44,7 +44,7 @@ def verdict_on(path: Path, error: Exception) -> Verdict:
     reason = foreign(str(error).strip().rstrip(".") or type(error).__name__)
     if head is not None and (found := _by_its_beginning(path, head)) is not None:
         is_mcap = head.startswith(_MCAP)  # the library knows what is wrong with an MCAP file
-        return found._replace(note=phrase("the reader says: {words}", words=reason)) if is_mcap else found
+        return found._replace(note=phrase("the reader reports: {words}", words=reason)) if is_mcap else found
     return Verdict(reason, None)
 
 
@@ -56,27 +56,29 @@ def _by_its_beginning(path: Path, head: bytes) -> Verdict | None:
     if head.startswith(_SQLITE):
         if _has_tables(path):
             return None
-        hint = phrase("take the .db3 file that 'ros2 bag record' wrote, with its metadata.yaml")
+        hint = phrase("use the .db3 file that 'ros2 bag record' wrote, with its metadata.yaml")
         return Verdict(phrase("it is a database without the tables of a recording"), hint)
     if head.startswith(_MCAP):
         hint = phrase("copy it again; 'mcap recover FILE -o OUT.mcap' recovers its complete records")
-        return Verdict(phrase("it is an MCAP file that is damaged or cut off"), hint)
+        return Verdict(phrase("it is a damaged or truncated MCAP file"), hint)
     if head.lstrip().lower().startswith((b"<!doctype html", b"<html")):
-        hint = phrase("the download is not the file: open it in a browser to see the server's answer")
+        hint = phrase("the download failed: open the file in a browser to see the server's answer")
         return Verdict(phrase("it is a web page"), hint)
     if head.startswith(b"version https://git-lfs"):
-        return Verdict(phrase("it is a pointer of Git LFS to the real file"), phrase("fetch that by 'git lfs pull'"))
+        return Verdict(
+            phrase("it is a Git LFS pointer, not the file itself"), phrase("fetch the file with 'git lfs pull'")
+        )
     if path.suffix == PACKED and head.startswith(_ZSTD):
         hint = phrase("copy it again; 'unzstd -t' checks whether it is complete")
-        return Verdict(phrase("its content is damaged or cut off"), hint)
+        return Verdict(phrase("its content is damaged or truncated"), hint)
     for begin, kind in ((_ZSTD, "zstd"), (b"\x1f\x8b", "gzip"), (b"PK\x03\x04", "zip")):
         if head.startswith(begin):
             return Verdict(phrase("it is compressed with {kind}", kind=foreign(kind)), phrase("unpack it first"))
     by_name = {".mcap": "MCAP", ".db3": "SQLite", PACKED: "zstd"}
     if path.suffix not in by_name:
         return None
-    hint = phrase("a name that ends with {ending} does not make it one; copy or record it again", ending=path.suffix)
-    reason = phrase("it does not begin as a file of {kind} does", kind=foreign(by_name[path.suffix]))
+    hint = phrase("the file has the extension {ending} but not its format; copy or record it again", ending=path.suffix)
+    reason = phrase("it does not begin with the {kind} header", kind=foreign(by_name[path.suffix]))
     return Verdict(reason, hint)
 
 
@@ -104,5 +106,5 @@ def _has_tables(path: Path) -> bool:
 
 
 def _ros1() -> Verdict:
-    hint = phrase("a recording of ROS 1 becomes one of ROS 2 by 'rosbags-convert --src X.bag --dst X'")
-    return Verdict(phrase("it is of ROS 1"), hint)
+    hint = phrase("convert it to ROS 2 with 'rosbags-convert --src X.bag --dst X'")
+    return Verdict(phrase("it is a ROS 1 recording"), hint)

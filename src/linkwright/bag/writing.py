@@ -241,7 +241,7 @@ class BagWriter:
                 Diagnostic(
                     "BAG105",
                     phrase(
-                        "recording '{path}' cannot be made: {reason}",
+                        "recording '{path}' cannot be created: {reason}",
                         path=display_path(self.path),
                         reason=foreign(reason),
                     ),
@@ -282,7 +282,7 @@ class BagWriter:
                 part.abort()
         reason = error.strerror if isinstance(error, OSError) else str(error)
         message = phrase(
-            "recording '{path}' ends here: {reason}", path=display_path(self.path), reason=foreign(reason or error)
+            "recording to '{path}' stops: {reason}", path=display_path(self.path), reason=foreign(reason or error)
         )
         hint = phrase("the messages written so far are kept; `linkwright bag play` plays them")
         return LinkwrightError(Diagnostic("BAG108", message, hint=hint))
@@ -296,4 +296,4 @@ class BagWriter:
 
 def _too_small(size: int, smallest: int) -> LinkwrightError:
     message = phrase("files of {size} bytes are too small to split a recording into", size=size)
-    return LinkwrightError(Diagnostic("BAG116", message, hint=phrase("ask for {smallest} or more", smallest=smallest)))
+    return LinkwrightError(Diagnostic("BAG116", message, hint=phrase("give {smallest} or more", smallest=smallest)))

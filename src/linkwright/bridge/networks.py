@@ -105,7 +105,7 @@ def read_network(text: str) -> Network:
                 "CLI451",
                 phrase("'{text}' is not a network that can be bridged", text=text),
                 hint=phrase(
-                    "write dds or zenoh, and add a domain after a colon for another one than ROS_DOMAIN_ID: dds:5"
+                    "write dds or zenoh; to use a domain other than ROS_DOMAIN_ID, add it after a colon, as in dds:5"
                 ),
             )
         )

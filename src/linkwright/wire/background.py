@@ -323,7 +323,7 @@ def log_join_failure(logger: Logger, error: LinkwrightError) -> None:
 
 def log_alone(logger: Logger, reason: Phrase) -> None:
     """Log that a process has no transport."""
-    logger.warning(f"This process does not communicate with other processes: {reason}. Everything inside of it works.")
+    logger.warning(f"This process does not communicate with other processes: {reason}. Communication inside it works.")
 
 
 AnyTransport = TypeVar("AnyTransport", bound=BackgroundTransport)

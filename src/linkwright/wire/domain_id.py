@@ -30,7 +30,7 @@ def read_domain_id(variables: Mapping[str, str], domain_id: int | None = None) -
             code="DDS101",
             message=phrase("'{text}' is not a DDS domain", text=text),
             hint=phrase(
-                "ROS_DOMAIN_ID is a number from 0 to {highest}; up to 101 is safe on every system",
+                "set ROS_DOMAIN_ID to a number from 0 to {highest}; up to 101 is safe on every system",
                 highest=MAX_DOMAIN_ID,
             ),
         )

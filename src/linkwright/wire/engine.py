@@ -109,7 +109,7 @@ class Engine(ABC):
     def _report(self, error: Exception) -> None:
         """Log that an endpoint is not mirrored: the library's refusal, or the traceback of an error of ours."""
         lines = [str(error)] if isinstance(error, self.refusal) else traceback.format_exception(error)
-        self._logger.error("A part of the graph is not seen outside of this process: " + "".join(lines).rstrip())
+        self._logger.error("A part of the graph is not visible outside this process: " + "".join(lines).rstrip())
 
 
 def ends_by_error() -> bool:

@@ -51,9 +51,9 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
     reason = dds.why_not(variables)
     if reason and find_spec("cyclonedds") is None and not variables.get(MIDDLEWARE, "").strip():
         return phrase(
-            "neither DDS nor Zenoh is installed: {hint}, or with 'dds' in place of 'zenoh' for the DDS of ROS 2's"
-            " default (there are wheels of it for Linux x86_64, Windows and macOS arm64, up to Python 3.13; this is"
-            " {system} {machine} with Python {version})",
+            "neither DDS nor Zenoh is installed: {hint}, or with 'dds' in place of 'zenoh' for DDS, the "
+            "default of ROS 2 (it has wheels for Linux x86_64, Windows and macOS arm64, up to Python "
+            "3.13; this is {system} {machine} with Python {version})",
             hint=install_hint("zenoh"),
             system=platform.system(),
             machine=platform.machine(),

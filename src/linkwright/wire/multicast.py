@@ -64,8 +64,7 @@ def _refused(error: OSError, group: str, port: int) -> LinkwrightError:
             phrase("multicast to {group}:{port} is not possible here", group=group, port=port),
             notes=(Note(foreign(error.strerror or error)),),
             hint=phrase(
-                "it needs a network interface with a route for multicast, and a port that no other program has to"
-                " itself"
+                "use a network interface with a multicast route, and a port that no other program uses exclusively"
             ),
         )
     )

@@ -98,8 +98,8 @@ def unfollowed_settings(environment: Mapping[str, str] | None = None) -> list[Di
             Diagnostic(
                 "DDS124",
                 phrase(
-                    "RMW_IMPLEMENTATION is '{name}', a middleware that Linkwright does not know: it uses DDS, as"
-                    " {cyclone} does",
+                    "RMW_IMPLEMENTATION is '{name}', a middleware that Linkwright does not know: Linkwright uses "
+                    "DDS, as with {cyclone}",
                     name=middleware,
                     cyclone=CYCLONE,
                 ),

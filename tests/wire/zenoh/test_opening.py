@@ -96,8 +96,8 @@ def test_a_router_says_whom_it_does_not_reach(router_port, silent_port):
 
 def test_addresses_that_are_none_or_unknown():
     assert "is not an address: write it as tcp/HOST:PORT" in obstacle("tcp/localhost", {})
-    assert "ports up to 65535" in obstacle("tcp/127.0.0.1:70000", {})
-    assert "the name of tcp/robot.invalid:7447 is not known" in obstacle("tcp/robot.invalid:7447", {})
+    assert "its port must be at most 65535" in obstacle("tcp/127.0.0.1:70000", {})
+    assert "the host name of tcp/robot.invalid:7447 cannot be resolved" in obstacle("tcp/robot.invalid:7447", {})
     assert not obstacle("udp/127.0.0.1:9", {}), "Zenoh's alone"
 
 

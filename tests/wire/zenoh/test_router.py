@@ -120,7 +120,7 @@ def test_a_verb_that_reaches_nobody_fails_and_says_why_once(monkeypatch, router_
     )
     assert result.returncode == 1
     assert not result.stdout
-    assert result.stderr.startswith("error[DDS112]: a session of Zenoh cannot be opened")
+    assert result.stderr.startswith("error[DDS112]: a Zenoh session cannot be opened")
     assert result.stderr.count("DDS112") == 1
 
 
@@ -131,13 +131,13 @@ def test_a_second_router_says_why_it_cannot_be_one(start_router, router_port):
         ROUTER, check=False, env={**os.environ, OVERRIDES: settings}, capture_output=True, text=True, timeout=60
     )
     assert second.returncode == 1
-    assert "error[DDS112]: a session of Zenoh cannot be opened" in second.stderr
+    assert "error[DDS112]: a Zenoh session cannot be opened" in second.stderr
     assert "Address already in use" in second.stderr
 
 
 @pytest.mark.parametrize(
     ("settings", "message"),
-    [("mode", "'mode' in ZENOH_CONFIG_OVERRIDE is not a setting"), ("mode=17", "Zenoh refuses 'mode=17'")],
+    [("mode", "'mode' in ZENOH_CONFIG_OVERRIDE is not a Zenoh setting"), ("mode=17", "Zenoh refuses 'mode=17'")],
 )
 def test_a_setting_that_is_refused_is_told_with_its_name(monkeypatch, settings, message):
     result = subprocess.run(

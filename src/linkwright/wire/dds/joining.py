@@ -29,9 +29,8 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
         return switched_off()
     if find_spec("cyclonedds") is None:
         return phrase(
-            "the package 'cyclonedds' is not installed: {hint} (there are wheels of it for"
-            " Linux x86_64, Windows and macOS arm64, up to Python 3.13; this is {system} {machine} with Python"
-            " {version})",
+            "the package 'cyclonedds' is not installed: {hint} (it has wheels for Linux x86_64, Windows "
+            "and macOS arm64, up to Python 3.13; this is {system} {machine} with Python {version})",
             hint=install_hint("dds"),
             system=platform.system(),
             machine=platform.machine(),

@@ -98,8 +98,8 @@ def _create_domain(settings: Settings) -> OpenDomain:
                         user_configuration=settings.user_configuration,
                     ),
                     hint=phrase(
-                        "it is XML text or the URL of an XML file such as file:///home/me/cyclonedds.xml; "
-                        "Cyclone's own messages are above"
+                        "write XML text or the URL of an XML file, such as file:///home/me/cyclonedds.xml; Cyclone's "
+                        "own messages are above"
                     ),
                 )
             )
@@ -111,9 +111,9 @@ def _create_domain(settings: Settings) -> OpenDomain:
                 domain_id=settings.domain_id,
             ),
             hint=phrase(
-                "at most {most} processes may be on it, no other program may hold its ports (from 7400 on, 250 "
-                "a domain), and a network interface must be up; another ROS_DOMAIN_ID has other ports, "
-                "CYCLONEDDS_URI can name an interface",
+                "check that at most {most} processes are in the domain, that its ports (from 7400, 250 per "
+                "domain) are free, and that a network interface is up; otherwise use another ROS_DOMAIN_ID, "
+                "or name an interface in CYCLONEDDS_URI",
                 most=most_participants(settings.domain_id),
             ),
         )

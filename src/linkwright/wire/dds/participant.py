@@ -102,6 +102,6 @@ def _no_participant(settings: Settings, error: CycloneError) -> LinkwrightError:
             message=phrase(
                 "DDS domain {domain_id} cannot be joined: {error}", domain_id=settings.domain_id, error=error
             ),
-            hint=phrase("another ROS_DOMAIN_ID has ports of its own"),
+            hint=phrase("use another ROS_DOMAIN_ID, which has other ports"),
         )
     )

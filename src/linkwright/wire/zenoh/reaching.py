@@ -66,21 +66,21 @@ def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
         return Phrase("")
     host, port = parts["host"].strip("[]"), int(parts["port"])
     if port > _LAST_PORT:
-        return phrase("'{address}' is not an address: there are ports up to 65535", address=address)
+        return phrase("'{address}' is not an address: its port must be at most 65535", address=address)
     try:
         with socket.create_connection((host, port), _PATIENCE) as called:
             return _tls_obstacle(address, called, host, tls) if parts["kind"] == "tls" else _silence(address, called)
     except socket.gaierror as error:
-        return phrase("the name of {address} is not known here: {reason}", address=address, reason=_reason(error))
+        return phrase("the host name of {address} cannot be resolved: {reason}", address=address, reason=_reason(error))
     except ConnectionRefusedError:
         return phrase("nothing listens at {address}: start a router there, or correct the port", address=address)
     except TimeoutError:
         return phrase(
-            "{address} does not answer: its machine is off or out of reach, or a firewall lets nothing through",
+            "{address} does not respond: its machine is off or unreachable, or a firewall blocks it",
             address=address,
         )
     except OSError as error:
-        return phrase("{address} is out of reach: {reason}", address=address, reason=_reason(error))
+        return phrase("{address} is unreachable: {reason}", address=address, reason=_reason(error))
 
 
 def _silence(address: str, called: socket.socket) -> Phrase:
@@ -119,13 +119,15 @@ def _tls_obstacle(address: str, called: socket.socket, host: str, tls: Mapping[s
         if authority:
             context.load_verify_locations(authority)
     except ssl.SSLError:
-        return phrase("'{path}' does not contain a certificate of an authority in PEM", path=authority)
+        return phrase("'{path}' does not contain the certificate of an authority in PEM format", path=authority)
     try:
         if certificate and key and tls.get("enable_mtls"):
             context.load_cert_chain(certificate, key)
     except ssl.SSLError:
         return phrase(
-            "'{certificate}' and '{key}' are not a certificate and its key in PEM", certificate=certificate, key=key
+            "'{certificate}' and '{key}' are not a certificate and its key in PEM format",
+            certificate=certificate,
+            key=key,
         )
     called.settimeout(_PATIENCE)
     is_agreed = False
@@ -145,7 +147,7 @@ def _tls_obstacle(address: str, called: socket.socket, host: str, tls: Mapping[s
     except ssl.SSLError as error:
         return _refused(address, certificate, str(error.reason or error))
     except OSError as error:
-        return phrase("{address} hangs up during TLS: {reason}", address=address, reason=_reason(error))
+        return phrase("{address} closes the connection during TLS: {reason}", address=address, reason=_reason(error))
     return Phrase("")
 
 
@@ -154,8 +156,8 @@ def _refused(address: str, certificate: str, reason: str) -> Phrase:
         return _no_tls(address)
     if "CERTIFICATE_REQUIRED" in reason:
         return phrase(
-            "{address} asks for a certificate: set enable_mtls, connect_certificate and connect_private_key below"
-            " transport/link/tls",
+            "{address} requests a certificate: set enable_mtls, connect_certificate and "
+            "connect_private_key below transport/link/tls",
             address=address,
         )
     if "ALERT" in reason:

@@ -52,7 +52,7 @@ def refusal(error: zenoh.ZError, config: zenoh.Config) -> LinkwrightError:
     return LinkwrightError(
         Diagnostic(
             "DDS112",
-            phrase("a session of Zenoh cannot be opened: {reason}", reason=foreign(_reason(error))),
+            phrase("a Zenoh session cannot be opened: {reason}", reason=foreign(_reason(error))),
             notes=tuple(Note(phrase) for phrase in found),
             hint=None if found else _advice(str(error)),
         )
@@ -93,7 +93,7 @@ def configuration(settings: Settings) -> zenoh.Config:
                 Diagnostic(
                     "DDS111",
                     phrase("Zenoh refuses the configuration file '{path}'", path=settings.file),
-                    hint=phrase("Zenoh says: {reason}", reason=foreign(_reason(error))),
+                    hint=phrase("Zenoh reports: {reason}", reason=foreign(_reason(error))),
                 )
             ) from error
     else:
@@ -113,7 +113,7 @@ def _override(config: zenoh.Config, key: str, value: str) -> None:
             Diagnostic(
                 "DDS111",
                 phrase("Zenoh refuses '{key}={value}' of {variable}", key=key, value=value, variable=OVERRIDES),
-                hint=phrase("Zenoh says: {reason}", reason=foreign(_reason(error))),
+                hint=phrase("Zenoh reports: {reason}", reason=foreign(_reason(error))),
             )
         ) from error
 

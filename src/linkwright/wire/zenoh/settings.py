@@ -147,7 +147,7 @@ def _overrides(variables: Mapping[str, str]) -> Entries:
             raise LinkwrightError(
                 Diagnostic(
                     "DDS111",
-                    phrase("'{item}' in {variable} is not a setting of Zenoh", item=item, variable=OVERRIDES),
+                    phrase("'{item}' in {variable} is not a Zenoh setting", item=item, variable=OVERRIDES),
                     hint=phrase('write it as key=value;key=value, such as mode="client"'),
                 )
             )
