@@ -90,7 +90,7 @@ def test_a_mesh_that_is_missing_leaves_the_visuals(of):
     found = of(f'<visual>{BOX}</visual><collision><geometry><mesh filename="none.stl"/></geometry></collision>')
     assert found.kind == "visual"
     assert found.notes[0].startswith("a collision mesh is left out: there is no mesh file")
-    assert found.notes[1] == "taken from the visual shapes instead"
+    assert found.notes[1] == "the visual shapes are used instead"
 
 
 def test_shapes_without_volume_are_left_out(of, tmp_path):

@@ -146,15 +146,15 @@ def test_a_plain_link_of_a_xacro_file_is_written(write):
 
 ONES = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
 REFUSED = {
-    "it is written by the macro 'part'": """
+    "the macro 'part' generates it": """
       <xacro:macro name="part" params="n"><link name="${n}"/></xacro:macro>
       <xacro:part n="a"/>""",
-    "its shapes are written with expressions, which numbers in the file would not follow": """
+    "its shapes are written with expressions, and numbers in the file would not follow them": """
       <xacro:property name="s" value="1"/>
       <link name="a"><visual><geometry><box size="${s} 1 1"/></geometry></visual></link>""",
     "its <inertial> is written with expressions": f"""
       <link name="a"><inertial><mass value="${{1 + 1}}"/>{ONES}</inertial></link>""",
-    "part of it is written by <xacro:heavy>": f"""
+    "<xacro:heavy> generates a part of it": f"""
       <xacro:macro name="heavy"><inertial><mass value="1"/>{ONES}</inertial></xacro:macro>
       <link name="a"><xacro:heavy/></link>""",
 }
@@ -184,7 +184,7 @@ def test_a_place_that_makes_two_links_is_refused(write, tmp_path):
     joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
     include = '<xacro:property name="n" value="{}"/><xacro:include filename="part.xacro"/>'
     written, _ = write(f"{XACRO}{include.format('a')}{include.format('b')}{joint}</robot>", name="r.xacro")
-    assert written.refused == {"a": "its text in the file makes several links"}
+    assert written.refused == {"a": "its text in the file defines several links"}
 
 
 def test_a_file_that_changed_meanwhile_is_left_alone(tmp_path):

@@ -73,7 +73,7 @@ def test_what_a_macro_writes_is_refused_and_the_rest_is_written(write):
     assert written.count == 2
     assert text.count("<collision>") == 1
     assert [each.code for each in written.refused] == ["DRIVE301", "DRIVE301"]
-    assert "by the macro 'part'" in written.refused[0].message
+    assert "the macro 'part' generates it" in written.refused[0].message
     assert written.refused[0].span is not None
 
 

@@ -109,7 +109,7 @@ def test_a_floating_link_moves_freely_and_a_planar_one_too():
     assert conversion.model.joints == ()
     assert Frames(conversion.model).pose("b")[:3] == (1.0, 0.0, 0.0)
     assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in conversion.diagnostics] == [
-        ("SDF171", "joint 'p' is planar, which SDF does not have: it is left out")
+        ("SDF171", "joint 'p' is planar, which SDF does not support: it is left out")
     ]
 
 
@@ -334,7 +334,7 @@ def test_links_without_mass_are_left_out_only_when_lumping():
     lumped = model_from_robot(robot, lump_fixed_joints=True)
     assert [link.name for link in lumped.model.links] == ["footprint"]
     assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in lumped.diagnostics] == [
-        ("SDF170", "link 'ghost' has no mass, so it is left out with all that hangs from it")
+        ("SDF170", "link 'ghost' has no mass, so it is left out with all links below it")
     ]
 
 
@@ -342,7 +342,7 @@ def test_a_sensor_of_a_lumped_joint_is_told_of():
     text = '<gazebo reference="j"><sensor name="ft" type="force_torque"/></gazebo>'
     conversion = model_from_robot(robot_of(link("a") + link("b") + joint("j", "a", "b") + text), lump_fixed_joints=True)
     assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in conversion.diagnostics] == [
-        ("SDF171", "sensor 'ft' is left out: the links of joint 'j' become one")
+        ("SDF171", "sensor 'ft' is left out: the links of joint 'j' are merged")
     ]
 
 

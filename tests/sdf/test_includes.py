@@ -294,9 +294,9 @@ def test_where_a_model_is_known_or_was_renamed_what_is_missing_is_a_warning_and_
         assert isinstance(found, Missing)
         facts[address.split("/")[2]] = (found.severity.name, str(found.hint))
     assert facts == {
-        "box": ("WARNING", "available: a.stl"),
-        "old_box": ("WARNING", "the folder that holds 'meshes/a.stl' is called 'box'"),
-        "far": ("INFO", "add the folder that holds 'far' to GZ_SIM_RESOURCE_PATH"),
+        "box": ("WARNING", "choose from a.stl"),
+        "old_box": ("WARNING", "the folder that contains 'meshes/a.stl' is named 'box'"),
+        "far": ("INFO", "add the folder that contains 'far' to GZ_SIM_RESOURCE_PATH"),
     }
 
 
@@ -361,8 +361,8 @@ def test_a_file_that_the_build_makes_of_a_template_is_an_information(tmp_path, e
     model, mesh = finder.model("model://plane", tmp_path), finder.file("model://plane/meshes/wing.stl", tmp_path)
     assert isinstance(model, Missing)
     assert isinstance(mesh, Missing)
-    assert (model.severity.name, str(model.hint)) == ("INFO", f"the build makes it from 'plane.sdf{ending}'")
-    assert (mesh.severity.name, str(mesh.hint)) == ("INFO", f"the build makes it from 'wing.stl{ending}'")
+    assert (model.severity.name, str(model.hint)) == ("INFO", f"the build creates it from 'plane.sdf{ending}'")
+    assert (mesh.severity.name, str(mesh.hint)) == ("INFO", f"the build creates it from 'wing.stl{ending}'")
 
 
 def test_our_own_models_do_not_hide_that_those_of_gazebo_have_more_files(tmp_path):

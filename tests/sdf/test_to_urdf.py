@@ -101,17 +101,17 @@ def joint(parent: str, child: str, name: str = "j") -> str:
 @pytest.mark.parametrize(
     ("inside", "start", "words"),
     [
-        (TWO, "<model name='m'>", "link 'b' is joined to nothing above it, as is 'a'"),
+        (TWO, "<model name='m'>", "link 'b' has no parent, and neither has 'a'"),
         (TWO + joint("b", "a"), "<model name='m'>", "the canonical link 'a' is the child of joint 'j'"),
         (TWO + joint("a", "b") + joint("a", "b", "k"), "<model name='m'>", "link 'b' is the child of two joints"),
-        (TWO + joint("world", "a"), "<model name='m'>", "joint 'j' hangs from the world"),
+        (TWO + joint("world", "a"), "<model name='m'>", "joint 'j' connects the model with the world"),
         (
             TWO + "<link name='c'/>" + joint("b", "c") + joint("c", "b", "k"),
             "<model name='m'>",
-            "hangs from itself",
+            "is below itself",
         ),
         ("<pose>1 0 0 0 0 0</pose><link name='a'/>", "<model name='m'>", "the model has a <pose>"),
-        ("<link name='a'/><model name='in'><link name='x'/></model>", "<model name='m'>", "a model in the model"),
+        ("<link name='a'/><model name='in'><link name='x'/></model>", "<model name='m'>", "contains another model"),
         ("", "<model name='m'>", "the model has no link"),
         (
             "<link name='a'><collision name='floor'><geometry><plane/></geometry></collision></link>",

@@ -43,7 +43,7 @@ def test_names_that_are_not_ascii(tmp_path):
     assert "底盘" in diagram.read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(("name", "hint"), [("robot.pfd", ".pdf"), ("robot", "it is one of")])
+@pytest.mark.parametrize(("name", "hint"), [("robot.pfd", ".pdf"), ("robot", "choose from")])
 def test_another_ending(tmp_path, name, hint):
     with pytest.raises(LinkwrightError) as caught:
         render(GV, tmp_path / name)

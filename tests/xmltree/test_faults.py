@@ -35,7 +35,7 @@ CASES = [
     ("<a b='x&y'/>", "XML206", "'&' does not begin an entity", 1, 8, AMPERSAND),
     ("<a b=1/>", "XML206", "the value of 'b' is not in quotes", 1, 6, 'write b="..."'),
     ("<a b/>", "XML206", "the attribute 'b' has no value", 1, 4, 'write b="..."'),
-    ("<a b='1'c='2'/>", "XML206", "a blank is missing between two attributes", 1, 9, None),
+    ("<a b='1'c='2'/>", "XML206", "a space is missing between two attributes", 1, 9, None),
     ("<a>1 < 2</a>", "XML206", "'<' does not begin a tag", 1, 6, "write '&lt;'"),
     (
         "<a><!-- a -- b --></a>",
@@ -104,8 +104,8 @@ def test_bytes_that_are_no_text() -> None:
 )
 def test_files_that_are_no_text(data: bytes) -> None:
     code, message, *_, hint = finding_of(data)
-    assert (code, message) == ("XML104", "'robot.urdf' is not a text")
-    assert "is it the file you meant?" in str(hint)
+    assert (code, message) == ("XML104", "'robot.urdf' is not a text file")
+    assert "check that it is the intended file" in str(hint)
 
 
 @pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
@@ -128,7 +128,7 @@ def test_a_zero_byte_in_a_text_is_shown_at_its_place() -> None:
 )
 def test_an_unfinished_merge(text: str) -> None:
     code, message, line, column, hint = finding_of(text)
-    assert (code, message) == ("XML206", "a merge of two versions was left unfinished here")
+    assert (code, message) == ("XML206", "there is an unresolved merge conflict here")
     assert (line, column) == (2, 1)
     assert "keep one of the two" in str(hint)
 
@@ -203,9 +203,9 @@ def test_a_pointer_of_git_lfs_is_named_as_such(name: str, tmp_path: Path) -> Non
         parse_file(path)
     (found,) = caught.value.diagnostics
     assert found.code == "XML106"
-    assert "pointer of Git LFS" in found.message
+    assert "Git LFS pointer" in found.message
     assert "git lfs pull" in (found.hint or "")
     text = path.read_text()
     for read in (lambda: parse(text, "<stdin>"), lambda: Overlay({path: text}).read(str(path))):
-        with pytest.raises(LinkwrightError, match="pointer of Git LFS"):
+        with pytest.raises(LinkwrightError, match="Git LFS pointer"):
             read()

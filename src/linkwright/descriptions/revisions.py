@@ -118,7 +118,7 @@ def _top_of(path: Path) -> Path:
         hint = phrase("compare it with another file: `linkwright diff OLD NEW`")
         if "dubious ownership" in done.stderr:
             message = phrase("git does not trust the repository of '{path}'", path=display_path(path))
-            hint = phrase("another user owns it; git's safe.directory lists the ones that git trusts")
+            hint = phrase("another user owns it; to trust it, add it to git's setting safe.directory")
         raise LinkwrightError(Diagnostic("CLI342", message, hint=hint))
     return Path(done.stdout.rstrip("\r\n")).resolve()
 
@@ -128,7 +128,9 @@ def _commit(top: Path, name: str) -> str:
     done = None if name.startswith("-") else _git(top, *words)
     if done is None or done.returncode != 0:
         message = phrase("there is no commit '{name}' in {folder}", name=name, folder=display_path(top))
-        hint = phrase("HEAD is the last one; `git log --oneline` lists others, and `git fetch` gets those of a server")
+        hint = phrase(
+            "HEAD is the last commit; `git log --oneline` lists others, and `git fetch` downloads those of a server"
+        )
         raise LinkwrightError(Diagnostic("CLI343", message, hint=hint))
     return done.stdout.strip()
 

@@ -333,7 +333,7 @@ def _as_written(path: Path, written: str | bytes) -> tuple[Document, tuple[Diagn
         message = phrase(
             "'{path}' is not read: it has more than {most} links", path=display_path(path), most=_MOST_LINKS
         )
-        hint = phrase("shapes that never move may be in one link")
+        hint = phrase("put shapes that never move into one link")
         raise LinkwrightError(Diagnostic("SDF163", message, hint=hint))
     return parse_as_gazebo(written, str(path))
 

@@ -39,7 +39,7 @@ def fault_in(data: bytes, kind: str) -> Phrase | None:
     if not data.strip():
         return phrase("it is empty")
     if is_pointer(data):
-        return phrase("it is a pointer of Git LFS: the mesh itself was not fetched")
+        return phrase("it is a Git LFS pointer: the mesh itself was not fetched")
     if _WEB_PAGE.match(data):
         return phrase("it is a web page, not a mesh")
     return next(_FAULTS[kind](data), None) if kind in _FAULTS else None
@@ -54,13 +54,13 @@ def _stl_faults(data: bytes) -> Iterator[Phrase]:
         return
     if len(data) < _HEADER:
         yield phrase(
-            "it ends after {count} bytes, and the header of an STL has {header}", count=len(data), header=_HEADER
+            "it ends after {count} bytes, but the header of an STL has {header}", count=len(data), header=_HEADER
         )
         return
     (said,) = struct.unpack_from("<I", data, _HEADER - 4)
     there = (len(data) - _HEADER) // _TRIANGLE
     if said > there:
-        yield phrase("its header says that it has {said} triangles, but there are {there}", said=said, there=there)
+        yield phrase("its header declares {said} triangles, but the file has {there}", said=said, there=there)
 
 
 def _text_stl_faults(data: bytes) -> Iterator[Phrase]:
@@ -89,7 +89,7 @@ def _obj_faults(data: bytes) -> Iterator[Phrase]:
                     continue
                 if not 1 <= abs(index) <= vertices:
                     yield _at(
-                        number, phrase("there is no vertex {index}; there are {count}", index=index, count=vertices)
+                        number, phrase("there is no vertex {index}; the mesh has {count}", index=index, count=vertices)
                     )
 
 
@@ -105,7 +105,7 @@ def _number_faults(line: int, words: list[str], count: int) -> Iterator[Phrase]:
         _at(line, phrase("'{word}' is not a finite number", word=word)) for word in words if not _is_number(word)
     )
     if len(words) != count:
-        yield _at(line, phrase("{there} numbers, where {count} are needed", there=len(words), count=count))
+        yield _at(line, phrase("{count} numbers are needed, but there are {there}", there=len(words), count=count))
 
 
 def _is_number(word: str) -> bool:
@@ -141,7 +141,7 @@ def _collada_faults(data: bytes) -> Iterator[Phrase]:
     if not any(element.tag == "geometry" for element in elements):
         yield phrase("it has no <geometry>")
     if not any(element.tag == "instance_geometry" for element in elements):
-        yield phrase("no <node> of it shows a geometry: it has no <instance_geometry>")
+        yield phrase("none of its <node> elements shows a geometry: there is no <instance_geometry>")
 
 
 def _element_faults(element: Element, known: set[str]) -> Iterator[Phrase]:
@@ -160,7 +160,7 @@ def _element_faults(element: Element, known: set[str]) -> Iterator[Phrase]:
         there = len(element.text().split())
         if count != str(there):
             message = phrase(
-                "<{tag}> has {there} numbers, where {count} are needed",
+                "<{tag}> has {there} numbers, but {count} are needed",
                 tag=element.tag,
                 there=there,
                 count=count or "?",
@@ -179,7 +179,7 @@ def _index_faults(mesh: Element) -> Iterator[Phrase]:
             largest = max((int(word) for word in element.text().split() if word.isdecimal()), default=0)
             if largest >= longest:
                 yield _of(
-                    element, phrase("there is no vertex {index}; there are {count}", index=largest, count=longest)
+                    element, phrase("there is no vertex {index}; the mesh has {count}", index=largest, count=longest)
                 )
 
 
@@ -205,14 +205,14 @@ def _glb_faults(data: bytes) -> Iterator[Phrase]:
     if len(data) < _GLB_HEADER + _CHUNK_HEADER:
         header = _GLB_HEADER + _CHUNK_HEADER
         yield phrase(
-            "it ends after {count} bytes, and the header of a .glb has {header}", count=len(data), header=header
+            "it ends after {count} bytes, but the header of a .glb has {header}", count=len(data), header=header
         )
         return
     version, length, size, kind = struct.unpack_from("<IIII", data, 4)
     if version != 2:
         yield phrase("it is glTF {version}, but only glTF 2 is read", version=version)
     if length > len(data):
-        yield phrase("its header says that it has {said} bytes, but there are {there}", said=length, there=len(data))
+        yield phrase("its header declares {said} bytes, but the file has {there}", said=length, there=len(data))
     if kind != _JSON_CHUNK:
         yield phrase("its first chunk is not JSON")
         return
@@ -275,7 +275,7 @@ def _missing(document: dict[str, Any], place: str, kind: str, index: int | None)
     count = len(document.get(kind, ()))
     if index is not None and not 0 <= index < count:
         yield phrase(
-            "{place} is {index}, and the number of {kind} is {count}", place=place, index=index, count=count, kind=kind
+            "{place} is {index}, but the number of {kind} is {count}", place=place, index=index, count=count, kind=kind
         )
 
 

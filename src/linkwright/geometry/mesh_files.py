@@ -105,7 +105,7 @@ def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: 
         corner, count = int(placed.mesh.faces.max()), len(vertices)
         if corner >= count:
             raise BadMeshError(
-                phrase("a triangle has corner {corner}, but there are {count}", corner=corner, count=count)
+                phrase("a triangle refers to vertex {corner}, but there are {count}", corner=corner, count=count)
             )
     return found
 
@@ -220,7 +220,7 @@ def parser_fault(error: Exception) -> Phrase:
     if isinstance(error, FileNotFoundError):
         return phrase("the file '{name}' that it references does not exist", name=str(error.filename or error))
     lines = str(error).strip().splitlines()
-    return phrase("its parser says: {said}", said=foreign(lines[0] if lines else type(error).__name__))
+    return phrase("the parser reports: {said}", said=foreign(lines[0] if lines else type(error).__name__))
 
 
 def file_resolver(path: str) -> Any:

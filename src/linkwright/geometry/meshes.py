@@ -113,7 +113,7 @@ def read_mesh(path: Path) -> TriangleMesh:
     """
     kind = path.suffix.lower()
     if kind not in MESH_ENDINGS:
-        message = phrase("the mesh '{path}' has a format that is not read", path=display_path(path))
+        message = phrase("the mesh '{path}' has an unsupported format", path=display_path(path))
         raise LinkwrightError(
             Diagnostic("INR102", message, hint=phrase("use {mesh_endings}", mesh_endings=joined(MESH_ENDINGS)))
         )

@@ -84,7 +84,7 @@ def estimate(
     if kind is None:
         return Estimate(link.name, None, None, 0, basis, 0.0, tuple(notes))
     if kind != prefer and (link.collisions if prefer == "collision" else link.visuals):
-        notes.append(phrase("taken from the {kind} shapes instead", kind=term(kind)))
+        notes.append(phrase("the {kind} shapes are used instead", kind=term(kind)))
     solid = combine(parts)
     if mass is not None:
         properties = solid.with_mass(mass)

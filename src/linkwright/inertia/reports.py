@@ -110,7 +110,7 @@ def as_json(robot: Robot, estimates: Sequence[Estimate], written: Written | None
 
 def _summary(found: Estimate) -> Phrase:
     if found.properties is None:
-        return phrase("no shape with a volume, so nothing is computed")
+        return phrase("no shape has a volume, so nothing is computed")
     shapes = (
         counted("{count} collision shape", "{count} collision shapes", found.shapes)
         if found.kind == "collision"

@@ -73,7 +73,7 @@ def written_element(element: Element | None, tag: str) -> Element:
     frame = element.origin if isinstance(element.origin, Frame) else None
     macro = next((outer.macro for outer in frames(frame) if outer.macro is not None), None)
     if macro is not None:
-        raise NotWritableError(phrase("it is written by the macro '{macro}'", macro=macro))
+        raise NotWritableError(phrase("the macro '{macro}' generates it", macro=macro))
     document = parse(element.source.text, element.source.name)
     written = next((child for child in document.root.walk() if child.offset == element.offset), None)
     if written is None or written.tag != tag:
@@ -90,12 +90,12 @@ def written_link(link: Link) -> Element:
     written = written_element(link.element, "link")
     dynamic = next((child.tag for child in written.elements() if child.tag.startswith("xacro:")), None)
     if dynamic is not None:
-        raise NotWritableError(phrase("part of it is written by <{tag}>", tag=dynamic))
+        raise NotWritableError(phrase("<{tag}> generates a part of it", tag=dynamic))
     for shape in (*written.elements("visual"), *written.elements("collision")):
         parts = (shape.first("origin"), shape.first("geometry"))
         if any(part is not None and _holds(part, _EXPRESSION) for part in parts):
             raise NotWritableError(
-                phrase("its shapes are written with expressions, which numbers in the file would not follow")
+                phrase("its shapes are written with expressions, and numbers in the file would not follow them")
             )
     return written
 

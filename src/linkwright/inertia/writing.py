@@ -48,7 +48,7 @@ def write_inertials(robot: Robot, properties: Mapping[str, MassProperties]) -> W
 
     def edits(name: str) -> tuple[SourceText, list[Replacement]]:
         if times[_place(robot.links[name])] > 1:
-            raise NotWritableError(phrase("its text in the file makes several links"))
+            raise NotWritableError(phrase("its text in the file defines several links"))
         return edits_for(robot.links[name], properties[name])
 
     return write_edits({name: partial(edits, name) for name in properties})

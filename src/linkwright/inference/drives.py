@@ -113,7 +113,7 @@ def _why_none(fixed: list[Pair], steered: list[Pair]) -> Phrase:
     if steered:
         return phrase("there are steered wheels, but no other pair that could drive")
     if fixed:
-        return phrase("there are pairs of wheels of different sizes, one of which may only support")
+        return phrase("there are pairs of wheels of different sizes, one of which may only support the robot")
     return phrase("there is no pair of wheels, one on the left and one on the right")
 
 
@@ -148,7 +148,7 @@ def _reason(drive: Drive) -> Phrase:
             "{names} turn wheels on the ground, {size}, and {joints} steer", names=names, size=size, joints=joints
         )
     if drive.kind == "mecanum":
-        return phrase("{names} turn wheels that are called mecanum, {size}", names=names, size=size)
+        return phrase("{names} turn wheels that are named mecanum, {size}", names=names, size=size)
     return phrase("{names} turn wheels on the ground, {size}", names=names, size=size)
 
 

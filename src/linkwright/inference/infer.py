@@ -45,7 +45,7 @@ def infer(robot: Robot, meshes: MeshLibrary, *, kind: DriveKind | None = None, w
     if own is None and idle is not None and verdict.drive is None:
         verdict = Verdict(Drive("joints"), phrase("its own controllers do not work here"))
     if asked and verdict.drive is None:
-        message = phrase("'{robot}' cannot be driven as asked: {why}", robot=robot.name, why=verdict.reason)
+        message = phrase("'{robot}' cannot be driven as requested: {why}", robot=robot.name, why=verdict.reason)
         raise LinkwrightError(Diagnostic("DRIVE211", message, hint=_OPTION))
     return _Inferring(survey, under, verdict, own, idle).result()
 
@@ -135,7 +135,7 @@ class _Inferring:
         if drive.kind != "joints":
             yield from self._turned_axes(drive)
             message = phrase(
-                "'{robot}' gets a drive of the kind {kind}: {why}",
+                "'{robot}' gets a {kind} drive: {why}",
                 robot=self._robot.name,
                 kind=drive.kind,
                 why=self._verdict.reason,
@@ -188,8 +188,8 @@ class _Inferring:
                 continue
             axis = Element("axis", {"xyz": " ".join(gazebo.number(-part + 0.0) for part in joint.axis)})
             message = phrase(
-                "the axis of joint '{joint}' points to the right: it is reversed, as a positive velocity is "
-                "forward for plugins",
+                "the axis of joint '{joint}' points to the right: it is reversed, because a positive "
+                "velocity must drive forward",
                 joint=joint.name,
             )
             yield Finding(_at(joint.element, "DRIVE110", message), joint.element, (axis,))
@@ -212,10 +212,10 @@ class _Inferring:
     def _unsupported(self, drive: Drive) -> Iterator[Finding]:
         if drive.kind == "differential" and not self._casters and len(self._under.wheels) == 2:
             message = phrase(
-                "only the two driven wheels of '{robot}' touch the ground: it tips over until another part does",
+                "only the two driven wheels of '{robot}' touch the ground: it tips over until another part touches it",
                 robot=self._robot.name,
             )
-            hint = phrase("add a caster, a ball that reaches the ground before or behind the wheels")
+            hint = phrase("add a caster, such as a ball that touches the ground in front of or behind the wheels")
             yield Finding(self._at_root("DRIVE204", message, Severity.WARNING, hint))
 
     def _at_root(
@@ -240,7 +240,7 @@ def _at(
 def _verdict(survey: Survey, under: Undercarriage, kind: DriveKind | None, chosen: Sequence[Wheel]) -> Verdict:
     """Return which drive the robot has: wheels, or the joints of a robot with a fixed base."""
     if kind == "joints":
-        return Verdict(Drive("joints"), phrase("its joints are to be moved"))
+        return Verdict(Drive("joints"), phrase("its joints are driven, as requested"))
     if kind is None and not chosen and survey.robot.root == _WORLD:
         return Verdict(Drive("joints"), phrase("its root is 'world', which does not move"))
     if kind is not None or chosen or under.wheels or under.crooked:
@@ -253,7 +253,7 @@ def _without_wheels(survey: Survey, under: Undercarriage) -> Verdict:
     if under.hanging:
         wheel, height = under.hanging[0]
         reason = phrase(
-            "the wheel on '{joint}' ends {height:.3g} m above the lowest point, which is of link '{link}'",
+            "the wheel on '{joint}' ends {height:.3g} m above the lowest point, which is on link '{link}'",
             joint=wheel.joint,
             height=height,
             link=under.lowest_link,
@@ -265,7 +265,7 @@ def _without_wheels(survey: Survey, under: Undercarriage) -> Verdict:
             phrase("the mesh '{mesh}' of link '{link}', which may be a wheel, cannot be read", mesh=mesh, link=link),
         )
     if _one_chain(survey):
-        return Verdict(Drive("joints"), phrase("it has no wheels, and all its joints are one chain from a base"))
+        return Verdict(Drive("joints"), phrase("it has no wheels, and all its joints form one chain from a base"))
     return Verdict(None, phrase("it has no wheels, and its base has more than one chain of joints"))
 
 
@@ -294,7 +294,8 @@ def _chosen(survey: Survey, name: str) -> Wheel:
     wheel = survey.wheel_on(joint)
     if wheel is None:
         message = phrase(
-            "joint '{joint}' does not turn a wheel: a wheel is round about a level axis and turns without limits",
+            "joint '{joint}' does not turn a wheel: a wheel must be round about a horizontal axis and "
+            "turn without limits",
             joint=joint.name,
         )
         raise LinkwrightError(_at(joint.element, "DRIVE210", message, Severity.ERROR))

@@ -104,7 +104,7 @@ def _collision(visual: Shape, link: Link, wheel: Wheel | None, survey: Survey) -
         rpy = rpy_from_quaternion(rotation_from_z(axis))
         cylinder = Cylinder(wheel.radius, wheel.width)
         words = phrase(
-            "a cylinder of radius {radius:.4g} m and length {width:.4g} m, as round as its mesh '{name}'",
+            "a cylinder of radius {radius:.4g} m and length {width:.4g} m that fits its mesh '{name}'",
             radius=wheel.radius,
             width=wheel.width,
             name=name,
@@ -158,7 +158,7 @@ def _masses(members: list[Link], densities: Mapping[str, float], meshes: MeshLib
         kept = min(max(properties.mass, _LIGHTEST), _HEAVIEST)
         bounded = properties.with_mass(kept)
         message = phrase(
-            "link '{link}' has no mass: it gets {mass:.3g} kg, its shapes at {density} kg/m3",
+            "link '{link}' has no mass: it gets {mass:.3g} kg, the mass of its shapes at {density} kg/m3",
             link=link.name,
             mass=bounded.mass,
             density=grouped(density * kept / properties.mass),
@@ -166,7 +166,7 @@ def _masses(members: list[Link], densities: Mapping[str, float], meshes: MeshLib
         yield _inertial("DRIVE102", message, link, bounded)
     if not found and members[0].element is not None:
         name = members[0].name
-        message = phrase("nothing that moves with link '{link}' has a shape or a mass: it gets 10 g", link=name)
+        message = phrase("no part that moves with link '{link}' has a shape or a mass: it gets 10 g", link=name)
         yield _inertial("DRIVE103", message, members[0], _FRAME)
 
 

@@ -85,7 +85,7 @@ class _Writer:
         owner = findings[0].owner
         assert owner is not None, "findings without an owner add nothing"
         if self._times[_place(owner)] > 1:
-            raise NotWritableError(phrase("its text in the file makes several links or joints"))
+            raise NotWritableError(phrase("its text in the file defines several links or joints"))
         if id(owner) in self._links:
             return self._in_link(owner, findings)
         if id(owner) in self._joints:
@@ -158,6 +158,6 @@ def _place(element: Element) -> tuple[str, int]:
 
 def _refusal(finding: Finding, why: str) -> Diagnostic:
     refused = finding.diagnostic
-    message = phrase("not written into the file: {what}: {why}", what=refused.message, why=why)
+    message = phrase("an inferred element is not written into the file: {what}: {why}", what=refused.message, why=why)
     hint = phrase("edit the macro or the expression; `linkwright drive FILE --show` prints the text")
     return Diagnostic("DRIVE301", message, refused.span, hint=hint, source=refused.source)

@@ -94,7 +94,7 @@ ACTOR = ElementRule(
             (
                 _FILE,
                 _SCALE,
-                value("interpolate_x", TRUTH, "whether it goes as fast as the figure walks", default="false"),
+                value("interpolate_x", TRUTH, "whether the animation keeps pace with the walk", default="false"),
             ),
             many=True,
             make=Animation,

@@ -123,7 +123,7 @@ class _Converter:
             return
         message = phrase("link '{name}' has no mass, so it is left out", name=body.name)
         if body.children:
-            message = phrase("link '{name}' has no mass, so it is left out with all that hangs from it", name=body.name)
+            message = phrase("link '{name}' has no mass, so it is left out with all links below it", name=body.name)
         self._report.warning("SDF170", message, element, hint=phrase("give it an <inertial> with a mass"))
 
     def _report_default_mass(self, bodies: list[Body]) -> None:
@@ -135,10 +135,10 @@ class _Converter:
         element = next((link.element for link in without if link.element is not None), None)
         if element is not None:
             message = phrase(
-                "links without a mass have the 1 kg that SDF gives them, and gz leaves them out: {names}",
+                "links without a mass get SDF's default of 1 kg, but gz leaves them out: {names}",
                 names=quoted_names(link.name for link in without),
             )
-            hint = phrase("give each an <inertial>: `linkwright inertia` works them out")
+            hint = phrase("give each link an <inertial>: `linkwright inertia` computes them")
             self._report.warning("SDF172", message, element, hint=hint)
 
     def _link(self, body: Body, extensions: dict[str, LinkExtension]) -> Link:
@@ -179,8 +179,10 @@ class _Converter:
     def _joint(self, body: Body, joint: urdf.Joint) -> Joint | None:
         if joint.type not in _TYPES:
             if joint.type == "planar" and joint.element is not None:
-                message = phrase("joint '{name}' is planar, which SDF does not have: it is left out", name=joint.name)
-                hint = phrase("two prismatic joints and a continuous one move in a plane")
+                message = phrase(
+                    "joint '{name}' is planar, which SDF does not support: it is left out", name=joint.name
+                )
+                hint = phrase("use two prismatic joints and a continuous joint instead")
                 self._report.warning("SDF171", message, joint.element, hint=hint)
             return None
         extension = self._extensions.joint(joint, self._robot)
@@ -191,7 +193,9 @@ class _Converter:
             kind, axis = "revolute", Axis(limit=AxisLimit(0.0, 0.0))
         if joint.name in self._robot.links and joint.element is not None:
             message = phrase("joint '{name}' has the name of a link, which SDF does not allow", name=joint.name)
-            self._report.warning("SDF171", message, joint.element, "name", hint=phrase("give each a name of its own"))
+            self._report.warning(
+                "SDF171", message, joint.element, "name", hint=phrase("give each of them its own name")
+            )
         return replace(
             extension,
             type=kind,
@@ -218,7 +222,7 @@ class _Converter:
         for sensor in self._extensions.joint(joint, self._robot).sensors:
             if sensor.element is not None:
                 message = phrase(
-                    "sensor '{name}' is left out: the links of joint '{joint}' become one",
+                    "sensor '{name}' is left out: the links of joint '{joint}' are merged",
                     name=sensor.name,
                     joint=joint.name,
                 )

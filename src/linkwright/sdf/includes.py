@@ -174,7 +174,7 @@ class _Resolver:
         if not isinstance(entity, Model):
             return
         if entity.name in names:
-            hint = phrase("give it a name of its own: <include><name>...</name>")
+            hint = phrase("give it another name: <include><name>...</name>")
             message = phrase("{kind} '{name}' is defined twice", kind=term("model"), name=entity.name)
             self._report("SDF110", message, include, hint, Severity.ERROR)
         names.add(entity.name)

@@ -24,7 +24,7 @@ class Plugin:
 
 PLUGIN = ElementRule(
     "plugin",
-    "code that the simulator is to run",
+    "code that the simulator runs",
     (
         AttributeRule("filename", TEXT, "the library, with or without lib and .so", required=True, default=""),
         AttributeRule("name", TEXT, "its name; in gz-sim the class", default=""),

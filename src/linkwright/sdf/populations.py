@@ -141,10 +141,10 @@ POPULATION = ElementRule(
             Distribution,
             "distribution",
             "how they are spread",
-            value("type", choice(*KINDS), "the way", default="random"),
+            value("type", choice(*KINDS), "the kind of distribution", default="random"),
             value("rows", INTEGER, "rows of a grid", default="1"),
             value("cols", INTEGER, "columns of a grid", default="1", field="columns"),
-            value("step", VECTOR3, "from one to the next in a grid", "m", default="0.5 0.5 0"),
+            value("step", VECTOR3, "the spacing of a grid", "m", default="0.5 0.5 0"),
             default=Distribution(),
         ),
         object_rule(

@@ -182,7 +182,7 @@ def _check_version(root: Element, report: SdfReport) -> None:
     found = _VERSION(written.strip())
     if found and int(found[1]) <= NEWEST[1]:
         return
-    message = phrase("there is no SDF version '{written}' that is known", written=written)
+    message = phrase("SDF version '{written}' is not known", written=written)
     hint = phrase("the versions are 1.0 to 1.12; the file is read as 1.12")
     report.warning("SDF102", message, root, "version", hint=hint)
 

@@ -76,7 +76,10 @@ def _joint(joint: Joint, frames: Frames) -> Iterator[Diagnostic]:
             continue
         element = joint.element.first(end) if joint.element is not None else None
         message = phrase(
-            "<{tag}> of {owner}: there is no '{name}'", tag=end, owner=_described(joint.element), name=name
+            "<{tag}> of {owner} names '{name}', which does not exist",
+            tag=end,
+            owner=_described(joint.element),
+            name=name,
         )
         yield _error("SDF140", message, element or joint.element, hint=did_you_mean(name, _linkable(frames)))
     if joint.parent and joint.parent == joint.child:
@@ -109,7 +112,10 @@ def _circles(parts: tuple[Frame | Link | Joint | Model, ...], frames: Frames) ->
         message = phrase("frames are relative to each other in a cycle: {value}", value=" -> ".join(circle))
         named = frames.named.get(circle[0])
         yield _error(
-            "SDF142", message, (named or part).element, hint=phrase("make one of them independent of the others")
+            "SDF142",
+            message,
+            (named or part).element,
+            hint=phrase("make the pose of one of them independent of the others"),
         )
 
 
@@ -136,7 +142,7 @@ def _is_known(name: str, frames: Frames) -> bool:
 def _unknown(element: Element | None, attribute: str, name: str, frames: Frames) -> Diagnostic:
     message = phrase("'{attribute}' names '{name}', which does not exist", attribute=attribute, name=name)
     hint = did_you_mean(name, frames.named) or phrase(
-        "available: {names}", names=joined([*frames.named][:8] or [MODEL])
+        "choose from {names}", names=joined([*frames.named][:8] or [MODEL])
     )
     return _error("SDF141", message, element, attribute, hint)
 

@@ -167,16 +167,16 @@ class SdfReport(Findings):
         """Report a reserved name."""
         message = phrase("'{name}' cannot be the name of a {kind}", name=name, kind=term(element.tag))
         if element.tag == name == WORLD:
-            hint = phrase("gz refuses this name, and Gazebo classic takes it; name it 'default', for instance")
+            hint = phrase("gz rejects this name, which Gazebo classic accepts; use a name such as 'default'")
             self.warning("SDF111", message, element, "name", hint=hint)
             return
-        hint = phrase("'::' separates names, and SDF reserves 'world' and '__...__'")
+        hint = phrase("choose another name: '::' separates names, and SDF reserves 'world' and '__...__'")
         self.error("SDF111", message, element, "name", hint=hint)
 
     def twice(self, element: Element, first: Element) -> None:
         """Report siblings with the same name."""
         notes: Sequence[Note] = (Note(phrase("first defined here"), first.span()),)
-        message = phrase("there are two elements named '{name}' in one place", name=element.attributes.get("name", ""))
+        message = phrase("two elements in the same place are named '{name}'", name=element.attributes.get("name", ""))
         if element.tag == first.tag:
             kind = element.tag
             message = phrase(
@@ -184,7 +184,7 @@ class SdfReport(Findings):
             )
         is_taken = self.is_of_classic and {element.tag, first.tag} == {"link", "joint"}  # libsdformat's Model::Load
         severity = Severity.WARNING if is_taken else Severity.ERROR
-        self._add(severity, "SDF110", message, element, "name", phrase("give each a name of its own"), notes)
+        self._add(severity, "SDF110", message, element, "name", phrase("give each of them its own name"), notes)
 
 
 def _filled(text: str, count: int) -> str:
@@ -218,7 +218,7 @@ def _explained(place: Phrase, text: str, attribute: AttributeRule, element: Elem
     if attribute.type is INTEGER:
         return phrase("{place} is not an integer: '{value}'", **values), None
     words = attribute.type.name.split(" | ")
-    hint = did_you_mean(text, words) or phrase("it is one of {names}", names=joined(words))
+    hint = did_you_mean(text, words) or phrase("choose from {names}", names=joined(words))
     return phrase("{place} is not known: '{value}'", **values), hint
 
 
@@ -232,10 +232,12 @@ def _miscounted(values: dict[str, Any], text: str, count: int, element: Element)
     if found == count and not all(map(isfinite, numbers(text))):
         return phrase("{place} is not {count} numbers: '{value}'", **values, count=count), None
     if found == count:
-        return phrase("the quaternion in {place} has no length: '{value}'", **values), phrase("no rotation is 0 0 0 1")
+        return phrase("the quaternion in {place} has length zero: '{value}'", **values), phrase(
+            "write 0 0 0 1 for no rotation"
+        )
     message = counted(
-        "{place} has 1 number where {wanted} are expected: '{value}'",
-        "{place} has {count} numbers where {wanted} are expected: '{value}'",
+        "{place} has 1 number, but {wanted} are expected: '{value}'",
+        "{place} has {count} numbers, but {wanted} are expected: '{value}'",
         found,
         **values,
         wanted=count,

@@ -231,11 +231,11 @@ class ResourceFinder:
         renamed = next((path for path in near[:2] if rest and (path / rest).exists()), None)
         if renamed is not None:
             here = renamed.absolute().name
-            return Missing(reason, phrase("the folder that holds '{path}' is called '{name}'", path=rest, name=here))
+            return Missing(reason, phrase("the folder that contains '{path}' is named '{name}'", path=rest, name=here))
         meant = misspelling_of(name, self.models()) if len(name) >= _SHORTEST else None
         if meant is not None:
             return Missing(reason, did_you_mean(name, [meant]))
-        hint = phrase("add the folder that holds '{name}' to {variable}", name=name, variable=SEARCH_VARIABLES[0])
+        hint = phrase("add the folder that contains '{name}' to {variable}", name=name, variable=SEARCH_VARIABLES[0])
         return Missing(reason, hint, Severity.INFO)
 
     def _cached(self, address: str) -> Path | Missing:
@@ -259,9 +259,10 @@ class ResourceFinder:
         if known is not None and not rest[1:]:
             return _SHIPPED / known
         hint = phrase(
-            "nothing is fetched from the network: `gz fuel download -u '{uri}'` puts it into the cache", uri=address
+            "models are not fetched from the network: run `gz fuel download -u '{uri}'` to put it into the cache",
+            uri=address,
         )
-        return Missing(phrase("'{name}' of Fuel is not in the cache", name=name), hint, Severity.INFO)
+        return Missing(phrase("the Fuel model '{name}' is not in the cache", name=name), hint, Severity.INFO)
 
     def _caches(self) -> Iterator[Path]:
         given = self._environment.get("GZ_FUEL_CACHE_PATH") or self._environment.get("IGN_FUEL_CACHE_PATH")
@@ -383,7 +384,7 @@ def _in_other_case(path: Path) -> Path | None:
 
 
 def _made_from(template: Path, path: Path) -> Missing:
-    hint = phrase("the build makes it from '{name}'", name=template.name)
+    hint = phrase("the build creates it from '{name}'", name=template.name)
     return Missing(phrase("there is no '{path}'", path=str(path)), hint, Severity.INFO)
 
 
@@ -399,5 +400,5 @@ def _no_file(path: Path) -> Missing:
         names = sorted(entry.name for entry in path.parent.iterdir() if _kind(entry) == kind)
         hint = did_you_mean(path.name, names)
         if names and hint is None:
-            hint = phrase("available: {names}", names=joined(names[:8]))
+            hint = phrase("choose from {names}", names=joined(names[:8]))
     return Missing(phrase("there is no '{path}'", path=str(path)), hint)

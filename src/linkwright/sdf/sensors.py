@@ -277,7 +277,7 @@ _IMU = object_rule(
         ElementRule(
             "custom_rpy",
             "roll, pitch, yaw of the custom frame",
-            (AttributeRule("parent_frame", TEXT, "the frame that it is against", default="", get=itemgetter(1)),),
+            (AttributeRule("parent_frame", TEXT, "the frame that it is relative to", default="", get=itemgetter(1)),),
             text=AttributeRule(
                 "text", VECTOR3, "roll, pitch, yaw", "rad", default="0 0 0", field="angles", get=itemgetter(0)
             ),

@@ -233,13 +233,13 @@ GEOMETRY = object_rule(
         object_rule(
             Blend,
             "blend",
-            "where one texture goes over into the next",
+            "the height at which one texture blends into the next",
             value("min_height", NUMBER, "where it begins", "m", default="0"),
-            value("fade_dist", NUMBER, "how far it goes", "m", default="0"),
+            value("fade_dist", NUMBER, "the height over which it blends", "m", default="0"),
             many=True,
             field="blends",
         ),
-        value("sampling", INTEGER, "how many heights are made of one pixel", default="2"),
+        value("sampling", INTEGER, "the number of heights per pixel", default="2"),
         get=_if(Heightmap),
     ),
     object_rule(

@@ -57,6 +57,6 @@ FOG = object_rule(
     value("color", COLOR, "its colour", default="1 1 1 1"),
     value("type", TEXT, "none, linear, constant or quadratic", default="none"),
     value("start", NUMBER, "where it begins", "m", default="1"),
-    value("end", NUMBER, "from where on nothing is seen", "m", default="100"),
+    value("end", NUMBER, "the distance beyond which nothing is visible", "m", default="100"),
     value("density", NUMBER, "how dense it is, unless it is linear", "1/m", default="1"),
 )

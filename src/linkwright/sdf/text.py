@@ -14,7 +14,7 @@ from linkwright.xmltree.tinyxml import COMMENT, forbidden, parse_as_tinyxml
 
 _EMPTY, _NOT_TEXT, _NOT_XML = "XML105", "XML104", "XML206"
 _LATE_DECLARATION = re.compile(rf"(?:\s|{COMMENT})+(<\?xml\s[^>]*\?>)")
-_READ_ALL_THE_SAME = phrase("simulators read it all the same; other XML readers refuse the file")
+_READ_ALL_THE_SAME = phrase("simulators read it anyway, but other XML readers reject the file")
 
 
 def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagnostic, ...]]:

@@ -75,10 +75,10 @@ def robot_from_sdf(sdf: Sdf, root: Element) -> Reading:
 
 def _only_model(sdf: Sdf, root: Element) -> Model:
     if sdf.worlds:
-        hint = phrase("give the <model> of the robot alone")
-        raise _NoRobotError(phrase("it has a world; a robot description is one model"), sdf.worlds[0].element, hint)
+        hint = phrase("give a file with only the <model> of the robot")
+        raise _NoRobotError(phrase("it has a world, but a robot description is one model"), sdf.worlds[0].element, hint)
     if len(sdf.models) != 1:
-        reason = phrase("it has {count} models; a robot description is one model", count=len(sdf.models))
+        reason = phrase("it has {count} models, but a robot description is one model", count=len(sdf.models))
         raise _NoRobotError(reason, root)
     return sdf.models[0]
 
@@ -96,7 +96,7 @@ class _Converter:
         if model.models or model.includes:
             inner = model.models[0].element if model.models else model.includes[0].element
             hint = phrase("include it with merge='true', or write its links into the model")
-            raise _NoRobotError(phrase("there is a model in the model"), inner, hint)
+            raise _NoRobotError(phrase("the model contains another model"), inner, hint)
         if not model.links:
             raise _NoRobotError(phrase("the model has no link"), model.element)
         above = self._joints_above()
@@ -119,12 +119,14 @@ class _Converter:
         for joint in self._model.joints:
             child = self._frames.link(joint.child)
             if WORLD in (child, self._frames.link(joint.parent)):
-                reason = phrase("{joint} hangs from the world", joint=_named(joint))
+                reason = phrase("{joint} connects the model with the world", joint=_named(joint))
                 raise _NoRobotError(reason, joint.element, phrase("set a fixed base where the robot is spawned"))
             if child in above:
                 values = {"link": child, "one": above[child].name, "other": joint.name}
                 reason = phrase("link '{link}' is the child of two joints, '{one}' and '{other}'", **values)
-                raise _NoRobotError(reason, joint.element, phrase("URDF knows trees only; leave one of them out"))
+                raise _NoRobotError(
+                    reason, joint.element, phrase("URDF supports only trees; leave one of the joints out")
+                )
             above[child] = joint
         return above
 
@@ -132,7 +134,7 @@ class _Converter:
         if root in above:
             values = {"link": root, "joint": above[root].name}
             reason = phrase("the canonical link '{link}' is the child of joint '{joint}'", **values)
-            hint = phrase("name the link that all others hang from: <model canonical_link='...'>")
+            hint = phrase("name the root link: <model canonical_link='...'>")
             raise _NoRobotError(reason, above[root].element, hint)
         for link in self._model.links:
             chain = {link.name: None}
@@ -140,13 +142,13 @@ class _Converter:
             while name in above:
                 name = self._frames.link(above[name].parent)
                 if name in chain:
-                    reason = phrase("link '{link}' hangs from itself", link=name)
+                    reason = phrase("link '{link}' is below itself in the tree of joints", link=name)
                     raise _NoRobotError(reason, above[name].element)
                 chain[name] = None
             if name != root:
                 values = {"link": name, "root": root}
-                reason = phrase("link '{link}' is joined to nothing above it, as is '{root}'", **values)
-                hint = phrase("join them with a fixed joint")
+                reason = phrase("link '{link}' has no parent, and neither has '{root}'", **values)
+                hint = phrase("connect them with a fixed joint")
                 raise _NoRobotError(reason, next(link.element for link in self._model.links if link.name == name), hint)
 
     def _joint(self, joint: Joint, above: dict[str, Joint]) -> urdf.Joint:
@@ -244,7 +246,7 @@ def _geometry(part: Visual | Collision) -> urdf.Geometry:
     if isinstance(shape, Box | Cylinder | Capsule | Sphere):
         return shape
     values = {"shape": term(type(shape).__name__.lower()), "name": part.name}
-    reason = phrase("'{name}' has the shape <{shape}>, which URDF has not", **values)
+    reason = phrase("'{name}' has the shape <{shape}>, which URDF does not support", **values)
     raise _NoRobotError(reason, part.element, phrase("use a box, a cylinder, a sphere or a mesh"))
 
 

@@ -190,12 +190,12 @@ WORLD = ElementRule(
             value("latitude_deg", NUMBER, "degrees north", "deg", default="0"),
             value("longitude_deg", NUMBER, "degrees east", "deg", default="0"),
             value("elevation", NUMBER, "height above the ellipsoid", "m", default="0"),
-            value("heading_deg", NUMBER, "how the x axis is turned", "deg", default="0"),
+            value("heading_deg", NUMBER, "the rotation of the x axis from east", "deg", default="0"),
         ),
         ElementRule(
             "atmosphere",
             "the air",
-            (AttributeRule("type", TEXT, "how it is modelled", default="adiabatic"),),
+            (AttributeRule("type", TEXT, "the model of the atmosphere", default="adiabatic"),),
             (
                 value("temperature", NUMBER, "its temperature at the origin", "K", default="288.15"),
                 value("temperature_gradient", NUMBER, "how it changes with the height", "K/m", default="-0.0065"),

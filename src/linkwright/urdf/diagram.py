@@ -30,7 +30,7 @@ def render(gv_text: str, path: str | Path) -> None:
     ending = path.suffix.lower()
     if ending not in IMAGE_ENDINGS:
         hint = did_you_mean(ending, IMAGE_ENDINGS) or phrase(
-            "it is one of {image_endings}", image_endings=joined(IMAGE_ENDINGS)
+            "choose from {image_endings}", image_endings=joined(IMAGE_ENDINGS)
         )
         raise LinkwrightError(
             Diagnostic(

@@ -15,7 +15,7 @@ from linkwright.xmltree import Document, Element, parse
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.positions import attribute_value_range
 
-_READ_ALL_THE_SAME = phrase("urdfdom reads it all the same; xacro and other XML readers refuse the file")
+_READ_ALL_THE_SAME = phrase("urdfdom reads it anyway, but xacro and other XML readers reject the file")
 _LATE_DECLARATION = lazy_pattern(r"\s+<\?xml\s[^>]*\?>")
 # Matches a blank that is followed by a number or the end of the value; in other values blanks do not matter. Each
 # pattern starts with a fixed character, which makes the search ten times as fast as one pattern for all three.

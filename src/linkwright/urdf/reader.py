@@ -69,7 +69,7 @@ def _drop_what_urdfdom_drops(values: dict[str, Any], findings: UrdfReport) -> No
             lost.append(phrase("{count} <{tag}>", count=len(found) - len(kept), tag=rule.tag))
         values[rule.target] = kept
     if first_lost is not None:
-        note = phrase("{owner} is left without {lost}, as in urdfdom", owner=owner_name(element), lost=joined(lost))
+        note = phrase("{owner} loses {lost}, as in urdfdom", owner=owner_name(element), lost=joined(lost))
         findings.annotate(_first_error(*first_lost, element, findings.version), Note(note))
 
 
@@ -313,7 +313,7 @@ def _read_version(root: Element, findings: UrdfReport) -> Version:
 
 def _explain_root(root: Element, findings: UrdfReport) -> None:
     if root.tag.startswith("xacro:"):
-        hint = phrase("a xacro file has <robot> as its root too")
+        hint = phrase("a xacro file also has <robot> as its root")
     elif root.tag in _OTHER_FORMATS:
         hint = phrase("this is {format}, not a robot description", format=_OTHER_FORMATS[root.tag])
     else:
@@ -381,4 +381,6 @@ def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
                 message = phrase("joint '{name}' mimics itself", name=joint.name)
                 if len(chain) > 1:
                     message = phrase("the mimic joints form a cycle: {value}", value=" -> ".join([*chain, target]))
-                findings.warning("URDF181", message, element, "joint", hint=phrase("one joint must move by itself"))
+                findings.warning(
+                    "URDF181", message, element, "joint", hint=phrase("remove <mimic> from one of the joints")
+                )

@@ -96,7 +96,7 @@ class Findings:
     def duplicate(self, kind: str, name: str, element: Element, first: Element | None) -> None:
         """Report a second element of the same kind and name."""
         notes = (Note(phrase("first defined here"), first.span()),) if first else ()
-        hint = phrase("give each {kind} a name of its own", kind=term(kind))
+        hint = phrase("give each {kind} its own name", kind=term(kind))
         self.reject(
             "URDF110",
             phrase("{kind} '{name}' is defined twice", kind=term(kind), name=name),
@@ -215,7 +215,9 @@ class UrdfReport(Findings):
         name, value = attribute.name, element.attributes[attribute.name]
         fields = {"name": name, "tag": rule.tag, "owner": owner_name(owner), "value": value}
         if attribute.type is JOINT_TYPE:
-            message = phrase("'{written}' is not a joint type, in {owner}", written=value, owner=owner_name(owner))
+            message = phrase(
+                "the type '{written}' of {owner} is not a joint type", written=value, owner=owner_name(owner)
+            )
             self.error("URDF140", message, element, name, hint=_joint_type_hint(value))
             return UNREADABLE
         if attribute.type is NUMBER:
@@ -232,8 +234,8 @@ class UrdfReport(Findings):
         if attribute.type is RGBA:
             return self._malformed_color(element, found, owner)
         message = counted(
-            "'{name}' in <{tag}> of {owner} has 1 number where {wanted} are expected: '{value}'",
-            "'{name}' in <{tag}> of {owner} has {count} numbers where {wanted} are expected: '{value}'",
+            "'{name}' in <{tag}> of {owner} has 1 number, but {wanted} are expected: '{value}'",
+            "'{name}' in <{tag}> of {owner} has {count} numbers, but {wanted} are expected: '{value}'",
             len(found),
             **fields,
             wanted=count,
@@ -278,7 +280,7 @@ class UrdfReport(Findings):
     def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:
         """Report that a geometry does not contain a shape."""
         assert rule.tag == "geometry"
-        hint = phrase("put a box, cylinder, sphere or mesh in it")
+        hint = phrase("add a box, cylinder, sphere or mesh")
         self.error("URDF131", phrase("<geometry> of {owner} is empty", owner=owner_name(owner)), element, hint=hint)
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
@@ -299,7 +301,7 @@ class UrdfReport(Findings):
             hint = None
             if all(0 <= part <= 255 for part in found):
                 scaled = [f"{part / 255:.3g}" if part > 1 else f"{part:g}" for part in found]
-                hint = phrase("colours go from 0 to 1, not to 255: '{scaled}'", scaled=" ".join(scaled))
+                hint = phrase("colours range from 0 to 1, not to 255: write '{scaled}'", scaled=" ".join(scaled))
             message = phrase("'rgba' of {owner} has a number outside 0 to 1: '{text}'", owner=owner, text=text)
             self.error("URDF123", message, color, "rgba", hint=hint)
             return None
@@ -307,7 +309,7 @@ class UrdfReport(Findings):
         if len(found) == 3:
             hint = phrase("add the alpha: '{text} 1'", text=text.strip())
         message = phrase(
-            "'rgba' of {owner} has {count} numbers where 4 are expected, so it is black: '{text}'",
+            "'rgba' of {owner} has {count} numbers, but 4 are expected, so it is black: '{text}'",
             owner=owner,
             count=len(found),
             text=text,
@@ -332,7 +334,7 @@ def _joint_type_hint(written: str) -> Phrase:
         if meant is None:
             return phrase("URDF has no such joint: build it from revolute joints")
         return phrase("did you mean {names}?", names=quoted(meant))
-    return did_you_mean(written, JOINT_TYPES) or phrase("it is one of {names}", names=joined(JOINT_TYPES))
+    return did_you_mean(written, JOINT_TYPES) or phrase("choose from {names}", names=joined(JOINT_TYPES))
 
 
 def _shape_hint(written: str, shapes: tuple[ElementRule, ...]) -> Phrase:
@@ -343,7 +345,7 @@ def _shape_hint(written: str, shapes: tuple[ElementRule, ...]) -> Phrase:
     meant = _SHAPE_ALIASES.get(written.casefold())
     if meant:
         return phrase("did you mean {names}?", names=quoted(meant))
-    return did_you_mean(written, names) or phrase("it is one of {names}", names=joined(names))
+    return did_you_mean(written, names) or phrase("choose from {names}", names=joined(names))
 
 
 def _count_hint(rule: ElementRule, attribute: AttributeRule, found: tuple[float, ...]) -> Phrase:

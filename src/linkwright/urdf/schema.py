@@ -148,7 +148,7 @@ def check_limit(limit: Limit, element: Element, owner: Element, findings: Findin
                 owner=owner_name(owner),
                 given=given[name],
             )
-            findings.error("URDF123", message, element, name, hint=phrase("give its size, without a sign"))
+            findings.error("URDF123", message, element, name, hint=phrase("give its magnitude, without a sign"))
     return limit if limit.deceleration is not None else replace(limit, deceleration=limit.acceleration)
 
 
@@ -230,7 +230,7 @@ GEOMETRY = ElementRule(
 MATERIAL = ElementRule(
     "material",
     "a colour, a texture, or the name of a material defined elsewhere",
-    (AttributeRule("name", TEXT, "the name others refer to it by", required=True),),
+    (AttributeRule("name", TEXT, "the name by which others refer to it", required=True),),
     (
         ElementRule("color", "the colour", (AttributeRule("rgba", RGBA, "red, green, blue, alpha"),), default=(None,)),
         ElementRule(
@@ -332,13 +332,13 @@ LIMIT = ElementRule(
     "limit",
     "the bounds of motion; revolute and prismatic joints need them",
     (
-        _number("lower", "lowest position", "rad or m", default="0", usual=True, later_default=(_LATER, -inf)),
-        _number("upper", "highest position", "rad or m", default="0", usual=True, **_NO_BOUND),
-        _number("effort", "greatest torque or force", "N m or N", required=True, until=_LATER, **_NO_BOUND),
-        _number("velocity", "greatest speed", "rad/s or m/s", required=True, until=_LATER, **_NO_BOUND),
-        _number("acceleration", "greatest acceleration", "rad/s2 or m/s2", since=_LATER),
-        _number("deceleration", "greatest deceleration; the acceleration when absent", "rad/s2 or m/s2", since=_LATER),
-        _number("jerk", "greatest jerk", "rad/s3 or m/s3", since=_LATER),
+        _number("lower", "minimum position", "rad or m", default="0", usual=True, later_default=(_LATER, -inf)),
+        _number("upper", "maximum position", "rad or m", default="0", usual=True, **_NO_BOUND),
+        _number("effort", "maximum torque or force", "N m or N", required=True, until=_LATER, **_NO_BOUND),
+        _number("velocity", "maximum speed", "rad/s or m/s", required=True, until=_LATER, **_NO_BOUND),
+        _number("acceleration", "maximum acceleration", "rad/s2 or m/s2", since=_LATER),
+        _number("deceleration", "maximum deceleration; the acceleration when absent", "rad/s2 or m/s2", since=_LATER),
+        _number("jerk", "maximum jerk", "rad/s3 or m/s3", since=_LATER),
     ),
     make=Limit,
     check=check_limit,
@@ -349,8 +349,8 @@ MIMIC = ElementRule(
     "follow another joint: multiplier * its position + offset",
     (
         AttributeRule("joint", TEXT, "the joint to follow", required=True),
-        _number("multiplier", "factor on its position", default="1", usual=True),
-        _number("offset", "added to it", "rad or m", default="0", usual=True),
+        _number("multiplier", "a factor on the position of that joint", default="1", usual=True),
+        _number("offset", "a value added to the result", "rad or m", default="0", usual=True),
     ),
     make=Mimic,
 )
@@ -361,8 +361,12 @@ SAFETY = ElementRule(
     (
         _number("k_velocity", "effort per velocity error", "N m s/rad or N s/m", required=True),
         _number("k_position", "velocity per position error", "1/s", default="0", usual=True),
-        _number("soft_lower_limit", "where it starts to act, below", "rad or m", default="0", usual=True),
-        _number("soft_upper_limit", "where it starts to act, above", "rad or m", default="0", usual=True),
+        _number(
+            "soft_lower_limit", "the lower position at which it starts to act", "rad or m", default="0", usual=True
+        ),
+        _number(
+            "soft_upper_limit", "the upper position at which it starts to act", "rad or m", default="0", usual=True
+        ),
     ),
     make=Safety,
     field="safety",
@@ -383,15 +387,15 @@ CALIBRATION = ElementRule(
     "calibration",
     "reference positions",
     (
-        _number("rising", "where the reference signal rises", "rad or m"),
-        _number("falling", "where the reference signal falls", "rad or m"),
+        _number("rising", "the position at which the reference signal rises", "rad or m"),
+        _number("falling", "the position at which the reference signal falls", "rad or m"),
     ),
     make=Calibration,
 )
 
 PARENT = ElementRule(
     "parent",
-    "the link it hangs from",
+    "the parent link",
     (AttributeRule("link", TEXT, "the link's name", required=True, field="parent"),),
     required=True,
     default=("",),
@@ -400,7 +404,7 @@ PARENT = ElementRule(
 
 CHILD = ElementRule(
     "child",
-    "the link it moves",
+    "the child link",
     (AttributeRule("link", TEXT, "the link's name", required=True, field="child"),),
     required=True,
     default=("",),

@@ -107,7 +107,7 @@ def _report_roots(roots: Sequence[str], links: Mapping[str, Link], findings: Fin
     findings.reject(
         "URDF152",
         phrase(
-            "{count} links have no parent joint where a robot has one root: {listed}", count=len(roots), listed=listed
+            "{count} links have no parent joint, but a robot has one root: {listed}", count=len(roots), listed=listed
         ),
         element,
         "name",

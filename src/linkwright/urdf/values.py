@@ -95,11 +95,11 @@ def number_hint(text: str) -> Phrase | None:
     if "${" in text or "$(" in text:
         return phrase("xacro did not evaluate this: expand the file with xacro first")
     if _reads(stripped):
-        return phrase("remove the blank after it: '{text}'", text=text.rstrip())
+        return phrase("remove the space after it: '{text}'", text=text.rstrip())
     if _reads(stripped.replace("\u2212", "-")):
         return phrase("write the minus sign as a hyphen: '{stripped}'", stripped=stripped.replace(chr(8722), "-"))
     if stripped.count(",") == 1 and _reads(stripped.replace(",", ".")):
-        return phrase("write the decimal point as a point: '{stripped}'", stripped=stripped.replace(",", "."))
+        return phrase("write a point as decimal separator: '{stripped}'", stripped=stripped.replace(",", "."))
     if stripped.lower().lstrip("+-") in ("inf", "infinity", "nan") or re.fullmatch(_DIGITS, stripped):
         return phrase("only finite numbers are read")
     if re.fullmatch("[+-]?0[xX][0-9a-fA-F]+", stripped):
@@ -129,12 +129,12 @@ def vector_hint(text: str, count: int) -> Phrase | None:
         return phrase("separate the numbers with spaces, not commas: '{pieces}'", pieces=" ".join(pieces))
     pieces = text.replace(",", ".").split()
     if "," in text and len(pieces) == count and all(map(_reads, pieces)):
-        return phrase("write the decimal point as a point: '{pieces}'", pieces=" ".join(pieces))
+        return phrase("write a point as decimal separator: '{pieces}'", pieces=" ".join(pieces))
     bad = next((piece for piece in text.split() if not _reads(piece)), None)
     if bad is None:
         return phrase("give {count} numbers, not {text_split}", count=count, text_split=len(text.split()))
     if bad.startswith("(") and "," in bad:
-        return phrase("a comma in an expression makes a pair of numbers; write the decimal point as a point")
+        return phrase("a comma in an expression makes a pair of numbers; write a point as decimal separator")
     hint = number_hint(bad)
     return phrase("'{bad}': {hint}", bad=bad, hint=hint) if hint else phrase("'{bad}' is not a number", bad=bad)
 

@@ -473,7 +473,7 @@ class Expander:
         if elsewhere is not None and elsewhere.hint is not None:
             fault.hint = elsewhere.hint
         elif elsewhere is not None and fault.hint is None:
-            fault.hint = phrase("move its definition above this, and out of any macro that ends before")
+            fault.hint = phrase("move its definition above this line, and out of any macro that ends before it")
         found = () if elsewhere is None else (elsewhere.note,)
         notes = (*fault.notes, *found, *trail(self.session.frame))
         return Diagnostic(fault.code, fault.message, fault.span, notes=notes, hint=fault.hint, source=fault.source)

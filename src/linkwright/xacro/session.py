@@ -357,7 +357,7 @@ class Session:
             return
         self._reported.add(key)
         message = phrase(
-            "ros/xacro cannot read '{path}': it is in {encoding} and not in UTF-8",
+            "ros/xacro cannot read '{path}': it is in {encoding}, not in UTF-8",
             path=source.name,
             encoding=encoding.upper(),
         )
@@ -399,7 +399,7 @@ def _check_characters(text: str) -> None:
     found = None if text.isprintable() else re.search(_NOT_XML, text)
     if found:
         message = phrase("the value has a character that XML cannot hold: U+{ord:04X}", ord=ord(found[0]))
-        raise Fault("XAC206", message, hint=phrase("'\\' in a text begins an escape; write '\\\\' for a backslash"))
+        raise Fault("XAC206", message, hint=phrase("'\\' in a string begins an escape; write '\\\\' for a backslash"))
 
 
 def _yaml_fault(path: str, text: str, error: YamlError) -> Fault:
@@ -412,7 +412,7 @@ def _yaml_fault(path: str, text: str, error: YamlError) -> Fault:
         fault.span = source.span(at)
         fault.passing = phrase("the file is loaded here")
         if text[at : at + 1] == "\t":
-            fault.hint = phrase("YAML is indented with blanks, not with tabs")
+            fault.hint = phrase("indent YAML with spaces, not tabs")
     return fault
 
 

@@ -96,8 +96,8 @@ def _refuse_binary(data: bytes, name: str) -> None:
         message = phrase("'{name}' is in UTF-16 and has no byte order mark", name=name)
         hint = phrase("save the file as UTF-8")
     elif not beginning.lstrip().startswith(b"<"):
-        message = phrase("'{name}' is not a text", name=name)
-        hint = phrase("it has bytes like those of images, archives and programs; is it the file you meant?")
+        message = phrase("'{name}' is not a text file", name=name)
+        hint = phrase("it has bytes like those of images, archives and programs; check that it is the intended file")
     else:
         return
     source = SourceText(name, "")

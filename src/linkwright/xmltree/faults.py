@@ -168,7 +168,9 @@ class _Fault:
         name = closing[1] if closing else ""
         span = self._source.span(start, closing.end() if closing else start + 2)
         if not self._open:
-            return Diagnostic("XML201", phrase("'</{name}>' closes nothing", name=name), span=span, source=self._source)
+            return Diagnostic(
+                "XML201", phrase("'</{name}>' closes no element", name=name), span=span, source=self._source
+            )
         inner, opened_at = self._open[-1]
         note = Note(
             phrase("'<{inner}>' is opened here", inner=inner), self._source.span(opened_at, opened_at + 1 + len(inner))
@@ -238,7 +240,7 @@ class _Fault:
                 return found
         character = self._character
         if not character:
-            return self._diagnostic("XML206", phrase("the file ends early"))
+            return self._diagnostic("XML206", phrase("the file ends unexpectedly"))
         return self._diagnostic("XML206", phrase("{character} is not expected here", character=repr(character)))
 
     @property
@@ -257,7 +259,7 @@ class _Fault:
             return None
         return self._diagnostic(
             "XML206",
-            phrase("a merge of two versions was left unfinished here"),
+            phrase("there is an unresolved merge conflict here"),
             len(_MERGE_MARK.rstrip()),
             at=line,
             hint=phrase("keep one of the two, and remove the lines with '<<<<<<<', '=======' and '>>>>>>>'"),
@@ -310,7 +312,7 @@ class _Fault:
     def _broken_by_entities(self) -> Diagnostic | None:
         if self._character != "<" or "<!ENTITY" not in self._text or not self._before.rstrip().endswith(">"):
             return None
-        hint = phrase("look at the entities that the document declares")
+        hint = phrase("check the entities that the document declares")
         return self._diagnostic("XML206", phrase("this is not well-formed once its entities are expanded"), hint=hint)
 
     def _less_than_in_tag(self) -> Diagnostic | None:
@@ -323,14 +325,14 @@ class _Fault:
         if found is None:
             return None
         message = phrase("the quotes around the value of '{open_quote}' are not closed", open_quote=found[1])
-        start, hint = self._offset - len(found[0]), phrase("write a quote where it ends")
+        start, hint = self._offset - len(found[0]), phrase("write a quote at the end of the value")
         return self._diagnostic("XML206", message, len(found[1]), at=start, hint=hint)
 
     def _missing_blank(self) -> Diagnostic | None:
         if not self._before.endswith(('"', "'")) or not _NAME.match(self._character):
             return None
-        hint = phrase("write a blank here, or look for a missing quote before it")
-        return self._diagnostic("XML206", phrase("a blank is missing between two attributes"), hint=hint)
+        hint = phrase("write a space here, or look for a missing quote before it")
+        return self._diagnostic("XML206", phrase("a space is missing between two attributes"), hint=hint)
 
     def _attribute_without_value(self) -> Diagnostic | None:
         bare = _BARE_ATTRIBUTE.search(self._before)

@@ -171,11 +171,11 @@ def test_what_refers_to_a_thing_knows_its_new_name():
 @pytest.mark.parametrize(
     ("name", "why"),
     [
-        ("lamp", "there is something named 'lamp' already"),
+        ("lamp", "an entity named 'lamp' already exists"),
         (" ", "a name cannot be empty"),
-        ("a::b", "means something else"),
-        ("world", "means something else"),
-        ("__x__", "means something else"),
+        ("a::b", "SDF reserves it"),
+        ("world", "SDF reserves it"),
+        ("__x__", "SDF reserves it"),
     ],
 )
 def test_some_names_cannot_be_given(name, why):

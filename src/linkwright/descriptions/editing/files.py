@@ -171,5 +171,7 @@ def _bytes_of(path: str) -> bytes:
 
 
 def _changed(path: str) -> Diagnostic:
-    message = phrase("another program has changed '{path}' meanwhile, so it is not written", path=display_path(path))
-    return Diagnostic("EDIT107", message, hint=phrase("look at the current robot, and repeat the edit"))
+    message = phrase(
+        "another program has changed '{path}' since it was read, so it is not written", path=display_path(path)
+    )
+    return Diagnostic("EDIT107", message, hint=phrase("check the current robot, and repeat the edit"))

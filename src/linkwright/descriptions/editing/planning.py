@@ -333,5 +333,5 @@ class _Planner:
 
 
 def _not_written(element: Element) -> Diagnostic:
-    message = phrase("<{tag}> is not written in a file as an element of its own", tag=element.tag)
+    message = phrase("<{tag}> is not written as a separate element in a file", tag=element.tag)
     return Diagnostic("EDIT103", message, element.span(), source=element.source)

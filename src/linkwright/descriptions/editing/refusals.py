@@ -57,8 +57,8 @@ def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: s
     if also is not None:
         what = _named(also.also)
         hint = phrase(
-            "give the macro or expression here a parameter or property of its own for this part, "
-            "or change the text and with it all of these"
+            "add a parameter or property for this part to the macro or expression here, or change the "
+            "text for all of these parts"
         )
         if index is None:
             message = phrase("an <{tag}> written here would also change {what}", tag=tag, what=what)
@@ -75,8 +75,8 @@ def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: s
 def _note(attempt: Attempt) -> Note:
     text = " ".join(attempt.place.text.split())
     if attempt.choice:
-        return Note(phrase("'{text}' selects the side, and stays", text=text), attempt.place.span)
-    return Note(phrase("'{text}' also makes {what}", text=text, what=_named(attempt.also)), attempt.place.span)
+        return Note(phrase("'{text}' selects the side and is not changed", text=text), attempt.place.span)
+    return Note(phrase("'{text}' also produces {what}", text=text, what=_named(attempt.also)), attempt.place.span)
 
 
 def _named(also: Sequence[str]) -> object:

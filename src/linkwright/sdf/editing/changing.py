@@ -313,7 +313,7 @@ def _coloured(entity: Entity, colour: Sequence[float]) -> list[Replacement]:
 
 def _static(entity: Entity, static: bool, size: Sequence[float] | None) -> list[Replacement]:
     if entity.kind != "model":
-        raise EditError(phrase("'{name}' is a light, and does not move anyway", name=entity.name))
+        raise EditError(phrase("'{name}' is a light, which never moves", name=entity.name))
     text = "true" if static else "false"
     child = entity.element.first("static")
     if child is not None:

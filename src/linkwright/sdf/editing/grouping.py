@@ -91,10 +91,10 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
     if not isinstance(model, Model):
         raise EditError(phrase("'{name}' is not a group that is written in this file", name=name))
     if not entity.parts or model.joints or model.frames or model.plugins or model.links:
-        raise EditError(phrase("'{name}' is more than the models in it, and cannot be taken apart", name=name))
+        raise EditError(phrase("'{name}' contains more than models, so it cannot be ungrouped", name=name))
     parts = [element for element in entity.element.elements() if element.tag in ("model", "include")]
     if len(parts) != len(entity.parts):
-        raise EditError(phrase("'{name}' cannot be taken apart: one of its includes does not exist", name=name))
+        raise EditError(phrase("'{name}' cannot be ungrouped: one of its includes does not exist", name=name))
     names = _names_of(world, entity, parts)
     edits: list[Replacement] = [writing.removed(entry) for entry in state_of(world, name)]
     frames = world.frames.inside(name)
@@ -106,7 +106,7 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
         if head != name:
             continue
         if not colon or part not in names:
-            raise EditError(phrase("'{name}' cannot be taken apart: something refers to it", name=name))
+            raise EditError(phrase("'{name}' cannot be ungrouped: another element refers to it", name=name))
         written = f"{names[part]}{more}{rest}"
         edits += writing.set_reference(element, attribute, written)
     edits += [writing.removed(element) for tag in ("pose", "static") for element in entity.element.elements(tag)]
@@ -134,7 +134,7 @@ def renamed_references_outside(world: WorldText, inside: frozenset[str], group_n
 
 def _check_group(entities: Sequence[Entity]) -> None:
     if len(entities) < 2:
-        raise EditError(phrase("a group is made of two models at least"))
+        raise EditError(phrase("a group needs at least two models"))
     light = next((entity for entity in entities if entity.kind == "light"), None)
     if light is not None:
         raise EditError(phrase("'{name}' is a light, which cannot be part of a model", name=light.name))
@@ -211,7 +211,7 @@ def _let_out(
         attribute = "relative_to" if "relative_to" in pose.attributes else "frame"
         return [*edits, *writing.set_attribute(pose, attribute, f"{names[head]}{colon}{tail}")]
     if base not in ("", MODEL):
-        raise EditError(phrase("'{name}' is relative to '{frame}', and cannot leave the group", name=old, frame=base))
+        raise EditError(phrase("'{name}' is relative to '{frame}', so it cannot leave the group", name=old, frame=base))
     if model.placement_frame:
         there = compose(there, world.frames.inside(entity.name).inside(old).pose(model.placement_frame))
     local = writing.pose_from(there)

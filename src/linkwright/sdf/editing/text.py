@@ -185,9 +185,9 @@ class WorldText:
         if not name.strip():
             raise EditError(phrase("a name cannot be empty"))
         if SEPARATOR in name or name == WORLD or (name.startswith("__") and name.endswith("__")):
-            raise EditError(phrase("'{name}' cannot be a name: it means something else in SDF", name=name))
+            raise EditError(phrase("'{name}' cannot be a name: SDF reserves it", name=name))
         if name in self.taken:
-            raise EditError(phrase("there is something named '{name}' already", name=name))
+            raise EditError(phrase("an entity named '{name}' already exists", name=name))
 
     def _entities(self) -> Iterator[tuple[str, Entity]]:
         seen: set[str] = set()

@@ -84,7 +84,7 @@ def _hash_of(item: Any) -> int:
 def _backwards(name: str) -> Callable[..., Any]:
     def search(text: Any, part: Any, *rest: Any) -> Any:
         if isinstance(part, (str, bytes)) and len(part) * len(text) > _MOST_COMPARED:
-            raise RefusalError(phrase("the texts are too long for '{name}'", name=name))
+            raise RefusalError(phrase("the strings are too long for '{name}'", name=name))
         return getattr(text, name)(part, *rest)
 
     return search
@@ -99,7 +99,7 @@ def _stripped(name: str) -> Callable[..., Any]:
         if isinstance(characters, str):
             characters = "".join(dict.fromkeys(characters))
             if len(characters) * len(text) > _MOST_COMPARED:
-                raise RefusalError(phrase("the texts are too long for '{name}'", name=name))
+                raise RefusalError(phrase("the strings are too long for '{name}'", name=name))
         return getattr(text, name)(characters)
 
     return strip
@@ -119,7 +119,7 @@ def check_codec(value: Any, encoding: str) -> None:
         return
     longest = max(map(len, value.split("."))) if name == "idna" and isinstance(value, str) else len(value)
     if longest > _MOST_CODED:
-        raise RefusalError(phrase("the text is too long for the encoding '{encoding}'", encoding=encoding))
+        raise RefusalError(phrase("the string is too long for the encoding '{encoding}'", encoding=encoding))
 
 
 def _coded(name: str) -> Callable[..., Any]:

@@ -85,7 +85,7 @@ def failure(error: Exception, segment: str, start: int, end: int) -> Fault:
     if isinstance(error, KeyError):
         words = phrase("there is no key {error}", error=foreign(error))
     elif isinstance(error, TypeError) and "str" in words and ("concatenate" in words or "+:" in words):
-        hint = phrase("turn the number into text with str(...)")
+        hint = phrase("convert the number to a string with str(...)")
     elif isinstance(error, RecursionError):
         words = phrase("it is nested too deeply")
     elif isinstance(error, ZeroDivisionError):
@@ -154,7 +154,7 @@ class Compiler:
 
     def _refused(self, node: ast.AST) -> Fault:
         start, end = self._place(node)
-        message = phrase("'{segment}' may not be used in an expression", segment=self._segment(start, end))
+        message = phrase("'{segment}' is not allowed in an expression", segment=self._segment(start, end))
         return Fault("XAC204", message, start, end)
 
     def _operand_hint(self, error: Exception, *operands: tuple[ast.expr, Any]) -> Phrase | None:
@@ -176,12 +176,12 @@ class Compiler:
                 united = re.fullmatch(_WITH_UNIT, value)
                 if united:
                     return phrase(
-                        "'{written}' is the text '{value}' here; write the number alone: '{united}'",
+                        "'{written}' is the string '{value}' here; write the number alone: '{united}'",
                         written=written,
                         value=value,
                         united=united[1],
                     )
-                return phrase("'{written}' is the text '{value}' here, not a number", written=written, value=value)
+                return phrase("'{written}' is the string '{value}' here, not a number", written=written, value=value)
         return None
 
     # names and constants
@@ -190,7 +190,7 @@ class Compiler:
         """Return the closure for a name at an offset of the source."""
         place = (start + self._shift, start + self._shift + len(name))
         if name.startswith("__"):
-            raise Fault("XAC204", phrase("the name '{name}' may not be used in an expression", name=name), *place)
+            raise Fault("XAC204", phrase("the name '{name}' is not allowed in an expression", name=name), *place)
 
         def look_up(env: Environment) -> Any:
             try:
@@ -328,7 +328,7 @@ class Compiler:
         start, end = self._place(node)
         start_of_name = end - len(name)
         if name.startswith("__"):
-            raise Fault("XAC204", phrase("'.{name}' may not be used in an expression", name=name), start_of_name, end)
+            raise Fault("XAC204", phrase("'.{name}' is not allowed in an expression", name=name), start_of_name, end)
 
         def attribute(env: Environment) -> Any:
             owner = value(env)
@@ -505,7 +505,7 @@ class Compiler:
         loops = []
         for generator in generators:
             if generator.is_async:
-                raise Fault("XAC204", phrase("'async' may not be used in an expression"))
+                raise Fault("XAC204", phrase("'async' is not allowed in an expression"))
             conditions = [self.compile(condition) for condition in generator.ifs]
             loops.append((self._target(generator.target), self.compile(generator.iter), conditions))
 
@@ -535,7 +535,7 @@ class Compiler:
                 if len(values) != len(binders):
                     raise ValueError(
                         phrase(
-                            "{count} values are expected and {other_count} given",
+                            "{count} values are expected, but {other_count} are given",
                             count=len(binders),
                             other_count=len(values),
                         )

@@ -27,7 +27,7 @@ _HINTS = (
     ("&&", phrase("write 'and'")),
     ("||", phrase("write 'or'")),
     ("!", phrase("write 'not'")),
-    ("$", phrase("names in an expression are written without a dollar sign")),
+    ("$", phrase("write names in an expression without a dollar sign")),
     ("?", phrase("write 'A if CONDITION else B'")),
 )
 

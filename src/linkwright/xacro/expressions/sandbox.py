@@ -141,7 +141,7 @@ def check_call(function: Any) -> None:
         RefusalError: if expressions may not create values of this type.
     """
     if isinstance(function, type) and function not in CALLABLE_TYPES:
-        raise RefusalError(phrase("'{name}' may not be called in expressions", name=function.__name__))
+        raise RefusalError(phrase("'{name}' cannot be called in expressions", name=function.__name__))
 
 
 def check_size(value: Any) -> Any:

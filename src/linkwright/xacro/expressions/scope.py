@@ -228,7 +228,7 @@ class Scope:
         chain = self.session.resolving
         if lazy.resolving:
             circle = " -> ".join([*chain[chain.index(name) :], name])
-            hint = phrase('evaluate one of them at its definition: lazy_eval="false"')
+            hint = phrase('write lazy_eval="false" in the definition of one of them')
             raise Fault(
                 "XAC203",
                 phrase("the property '{name}' depends on itself: {circle}", name=name, circle=circle),

@@ -379,7 +379,7 @@ def _warn_of_value(expander: Expander, site: Site, name: str, value: object) -> 
         )
     )
     written = node.attributes["value"].strip()
-    hint = phrase("make it a text: {written}", written="${str(" + written[2:-1].strip() + ")}")
+    hint = phrase("convert it to a string: {written}", written="${str(" + written[2:-1].strip() + ")}")
     diagnostic = expander.session.warn("XAC903", message, node.attribute_span("value"), hint)
     if diagnostic is not None:
         expander.unwritable[id(site.parent), name] = (site.parent, diagnostic)

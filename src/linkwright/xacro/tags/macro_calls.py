@@ -236,7 +236,7 @@ class _Call:
         known = [parameter.name for parameter in macro.parameters if not parameter.is_block]
         hint = did_you_mean(name, [candidate for candidate in known if candidate not in node.attributes])
         if f"{name}," in known:
-            hint = phrase("separate the parameters of the macro with blanks, without commas")
+            hint = phrase("separate the parameters of the macro with spaces, not commas")
         if hint is None and f"*{name}" in {parameter.name.replace("**", "*") for parameter in macro.parameters}:
             hint = phrase("'{name}' is a block: write it as an element inside the call", name=name)
         if hint is None:
@@ -265,7 +265,7 @@ class _Call:
         )
         hint = phrase("write {attributes}", attributes=" ".join(f'{parameter.name}="..."' for parameter in missing))
         if not all(parameter.name.lstrip("*").isidentifier() for parameter in missing):
-            hint = phrase("a default with blanks in it ends at the first one; put it in quotes")
+            hint = phrase("a default that contains spaces ends at the first space; put it in quotes")
         note = self._definition(macro, missing[0])
         self._expander.fail_at("XAC403", message, node, node.span(), hint, note)
 
