@@ -82,8 +82,8 @@ def test_a_source_that_is_gone_is_told_of(tmp_path: Path, monkeypatch: pytest.Mo
     gone = Installation(Origin(str(tmp_path / "gone")), PIP)
     monkeypatch.setattr("linkwright.diagnostics.installation.find_installation", lambda: gone)
     assert str(install_hint("image")) == (
-        "run pip install 'PATH_TO_LINKWRIGHT[image]', with the path of a checkout or a wheel of Linkwright in place of"
-        f" PATH_TO_LINKWRIGHT: '{tmp_path / 'gone'}', which it was installed from, no longer exists"
+        "run pip install 'PATH_TO_LINKWRIGHT[image]', and replace PATH_TO_LINKWRIGHT with the path of a checkout or "
+        f"wheel of Linkwright: '{tmp_path / 'gone'}', from which it was installed, no longer exists"
     )
 
 

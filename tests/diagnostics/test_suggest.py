@@ -52,23 +52,23 @@ def test_a_missing_file_has_a_hint_whatever_is_beside_it(tmp_path, monkeypatch):
     assert missing_file_hint(tmp_path / "a.urdf") == f"the current folder is '{tmp_path}'"
     (tmp_path / "robot.urdf").touch()
     (tmp_path / "notes.txt").touch()
-    assert missing_file_hint(tmp_path / "a.urdf") == "available: robot.urdf"
+    assert missing_file_hint(tmp_path / "a.urdf") == "choose from robot.urdf"
     assert missing_file_hint(tmp_path / "robto.urdf") == "did you mean 'robot.urdf'?"
     assert missing_file_hint(tmp_path / "robot.urfd") == "did you mean 'robot.urdf'?"
     assert missing_file_hint(tmp_path / "robto.udrf") == "did you mean 'robot.urdf'?"
-    assert missing_file_hint(tmp_path / "notes.urdf") == "available: robot.urdf"
-    assert missing_file_hint(tmp_path / "x", lambda name: name.endswith(".txt")) == "available: notes.txt"
+    assert missing_file_hint(tmp_path / "notes.urdf") == "choose from robot.urdf"
+    assert missing_file_hint(tmp_path / "x", lambda name: name.endswith(".txt")) == "choose from notes.txt"
 
 
 def test_a_longer_ending_may_be_meant(tmp_path):
     (tmp_path / "robot.urdf.xacro").touch()
     assert missing_file_hint(tmp_path / "robot.xacro") == "did you mean 'robot.urdf.xacro'?"
-    assert missing_file_hint(tmp_path / "robot.v2.xacro").startswith("available: ")
+    assert missing_file_hint(tmp_path / "robot.v2.xacro").startswith("choose from ")
 
 
 @pytest.mark.parametrize("address", ["https://example.org/r.urdf", "http://localhost/r.urdf"])
 def test_an_address_is_told_that_nothing_is_fetched(tmp_path, address):
-    hint = "files are not fetched from the network: download it, and name the file"
+    hint = "files are not fetched from the network: download the file, and give its path"
     assert missing_file_hint(Path(address)) == hint
     assert missing_file_hint(tmp_path / address) == hint
     assert as_typed(Path(address)) == as_typed(tmp_path / address) == as_typed(address) == address

@@ -362,7 +362,7 @@ def test_a_misspelt_command_is_told_once():
 def test_two_drivers_on_one_topic():
     seen = more(WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/cmd_vel", TWIST))
     found = only(replace(seen, disputed=(DriversSeen("/cmd_vel", ("/planner", "/teleop")),)), "DOC208")
-    assert found.message == "two drivers on one topic: '/planner', '/teleop' publish velocities on '/cmd_vel'"
+    assert found.message == "two nodes drive the robot: '/planner', '/teleop' publish velocities on '/cmd_vel'"
     assert codes(seen) == []
 
 

@@ -90,7 +90,7 @@ def test_no_configuration_is_no_mistake(tmp_path):
         ("ignor = []\n", "1:1 LINT102 there is no setting 'ignor' | did you mean 'ignore'?"),
         (
             'ignore = "LW201"\n',
-            '1:1 LINT103 \'ignore\' is not a list of texts | write ignore = ["LW204", "limit-inverted"]',
+            '1:1 LINT103 \'ignore\' is not a list of strings | write ignore = ["LW204", "limit-inverted"]',
         ),
         (
             'ignore = [\n  "LW201",\n  "limit-invertd",\n]\n',
@@ -102,7 +102,7 @@ def test_no_configuration_is_no_mistake(tmp_path):
         ),
         (
             '[per-file-ignores]\n"a/*.urdf" = "LW1"\n',
-            '2:2 LINT103 \'a/*.urdf\' is not a list of texts | write "a/*.urdf" = ["LW204", "limit-inverted"]',
+            '2:2 LINT103 \'a/*.urdf\' is not a list of strings | write "a/*.urdf" = ["LW204", "limit-inverted"]',
         ),
         (
             "[options.origin-far]\nfarthst = 3\n",

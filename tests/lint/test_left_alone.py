@@ -155,7 +155,7 @@ def test_a_parameter_that_other_macros_take_too(codes_of, more, codes):
 
 @pytest.mark.parametrize(
     ("unused", "hint"),
-    [("image_px", "use it with ${...}, or remove it"), ("imge_pz", "'image_pz' is used: is this one meant?")],
+    [("image_px", "use it with ${...}, or remove it"), ("imge_pz", "did you mean 'image_pz', which is used?")],
 )
 def test_a_siblings_name_is_not_proposed_for_an_unused_property(tmp_path, unused, hint):
     properties = "".join(f'<xacro:property name="{name}" value="1"/>' for name in (unused, "image_pz"))
@@ -452,7 +452,10 @@ def test_a_gripper_that_presses_has_no_soft_limit_where_it_is_closed(codes_of, l
 
 @pytest.mark.parametrize(
     ("origin", "hint"),
-    [("0 0 0.1", "the middle of the visuals is at 1.05 2 3.15 in the link frame"), ("0 0 0", "give both the same")],
+    [
+        ("0 0 0.1", "the centre of the visuals is at 1.05 2 3.15 in the link frame"),
+        ("0 0 0", "give visuals and collisions the same"),
+    ],
 )
 def test_a_mesh_off_its_own_origin_needs_another_origin_for_its_collision(tmp_path, origin, hint):
     corners = "".join(f"vertex {corner}\n" for corner in ("1 2 3", "1.1 2 3", "1 2 3.1"))

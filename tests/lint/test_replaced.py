@@ -44,7 +44,7 @@ def test_two_findings_at_one_place_of_a_package_file_are_both_told(tmp_path):
     (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="a"/></robot>')
     found = check(tmp_path / "robot.urdf", settings=Settings(select=("LW826",)))
     assert [each.code for each in found] == ["LW826", "LW826"]
-    assert str(found[0].hint).startswith("make an empty file 'resource/p', and add ")
+    assert str(found[0].hint).startswith("create an empty file 'resource/p', and add ")
     (tmp_path / "resource").mkdir()
     (tmp_path / "resource" / "p").touch()
     assert str(check(tmp_path / "robot.urdf", settings=Settings(select=("LW826",)))[0].hint).startswith("add ")

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 _BEGINS = b"version https://git-lfs.github.com/spec/"
-IS_POINTER = phrase("it is only a pointer of Git LFS")
+IS_POINTER = phrase("it is only a Git LFS pointer")
 FETCH = phrase("run `git lfs pull` in its repository")
 
 

@@ -62,8 +62,8 @@ def install_hint(extra: str, package: str = "") -> Phrase:
     command = installation.command_for_extras(extra)
     if installation.origin.is_gone:
         return phrase(
-            "run {command}, with the path of a checkout or a wheel of Linkwright in place of {placeholder}: "
-            "'{path}', which it was installed from, no longer exists",
+            "run {command}, and replace {placeholder} with the path of a checkout or wheel of "
+            "Linkwright: '{path}', from which it was installed, no longer exists",
             command=command,
             placeholder=installation.origin.words(())[-1],
             path=installation.origin.place,

@@ -174,7 +174,7 @@ def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -
         wanted: a predicate for names that may be meant; by default names with the same extension.
     """
     if any(part in path.parts for part in _ADDRESSES):
-        return phrase("files are not fetched from the network: download it, and name the file")
+        return phrase("files are not fetched from the network: download the file, and give its path")
     folder = path.parent
     if wanted is None:
 
@@ -194,5 +194,5 @@ def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -
         return like
     there = [name for name in names if wanted(name)][:_LISTED]
     if there:
-        return phrase("available: {names}", names=joined(there))
+        return phrase("choose from {names}", names=joined(there))
     return phrase("the current folder is '{current}'", current=os.getcwd())  # noqa: PTH109 - as above

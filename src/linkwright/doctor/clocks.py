@@ -66,7 +66,7 @@ def _simulated(seen: Observation) -> Iterator[Diagnostic]:
             "DOC604",
             phrase("{count} nodes publish /clock: {senders}", count=len(senders), senders=listed(senders)),
             notes=(Note(phrase("time jumps between them, and each jump back clears the buffers of transforms")),),
-            hint=phrase("end one of them; play only one bag with --clock"),
+            hint=phrase("stop one of them; play only one bag with --clock"),
         )
 
 

@@ -15,8 +15,9 @@ _OVER_DDS = phrase(
     "ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET (and leave ROS_LOCALHOST_ONLY unset)"
 )
 _OVER_ZENOH = phrase(
-    "use the same ROS_DOMAIN_ID as the nodes; nodes of rmw_zenoh_cpp are found by a router, which 'linkwright "
-    "run rmw_zenoh_cpp rmw_zenohd' starts; nodes of DDS are not found over Zenoh"
+    "use the same ROS_DOMAIN_ID as the nodes, and start a router with 'linkwright run "
+    "rmw_zenoh_cpp rmw_zenohd' to find nodes of rmw_zenoh_cpp; nodes of DDS are not found over "
+    "Zenoh"
 )
 
 
@@ -52,7 +53,7 @@ def _domain(text: str) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "DOC803",
             phrase(
-                "ROS_DOMAIN_ID is {domain}; above {highest} the system may give the ports to other programs",
+                "ROS_DOMAIN_ID is {domain}: above {highest}, the system can give the ports to other programs",
                 domain=text,
                 highest=_HIGHEST_SAFE_DOMAIN,
             ),

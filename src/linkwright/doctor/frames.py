@@ -77,7 +77,9 @@ def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
                 senders=listed(senders),
             ),
             notes=(Note(phrase("the frames jump between the poses that they publish")),),
-            hint=phrase("end one of them, or have it leave these frames out (such as publish_tf: false)"),
+            hint=phrase(
+                "stop one of them, or configure it not to publish these frames (for example publish_tf: false)"
+            ),
         )
 
 
@@ -91,7 +93,9 @@ def _numbers(seen: Observation) -> Iterator[Diagnostic]:
                     child=transform.child,
                 ),
                 notes=(Note(phrase("it is published by {senders}", senders=listed(transform.senders))),),
-                hint=phrase("check the joint positions and origins behind it; the identity rotation is w: 1"),
+                hint=phrase(
+                    "check the joint positions and origins from which it is computed; the identity rotation is w: 1"
+                ),
             )
 
 
@@ -164,8 +168,9 @@ def _never_sent(robot: RobotSeen, joints: Sequence[Joint]) -> Diagnostic:
         phrase("there is no transform of {frames}: no static transform of it was published", frames=_frames(frames)),
         notes=(Note(phrase("fixed joints: {joints}", joints=listed(joint.name for joint in joints))),),
         hint=phrase(
-            "robot_state_publisher publishes those once on /tf_static when it starts: is it running with this "
-            "description, and is its publisher transient local so that late comers get them?"
+            "robot_state_publisher publishes them once on /tf_static when it starts: check that it runs "
+            "with this description, and that its publisher is transient local, so that late "
+            "subscriptions receive them"
         ),
     )
 
@@ -214,7 +219,7 @@ def _without_state(seen: Observation, robot: RobotSeen, joints: Sequence[Joint])
                 ),
                 hint=near
                 or phrase(
-                    "have its driver or controller publish it (joint_state_broadcaster: joints), or run "
+                    "configure its driver or controller to publish it (joint_state_broadcaster: joints), or run "
                     "joint_state_publisher with source_list"
                 ),
             )
@@ -347,7 +352,8 @@ def _frames_of_messages(seen: Observation, robots: Sequence[RobotSeen]) -> Itera
                 notes=(Note(phrase("known frames: {known}", known=listed(sorted(known)))),),
                 hint=did_you_mean(frame.frame, known)
                 or phrase(
-                    "publish its transform, as static_transform_publisher does, or have the node name another frame"
+                    "publish its transform, as static_transform_publisher does, or configure the node to use "
+                    "another frame"
                 ),
             )
 

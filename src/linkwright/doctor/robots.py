@@ -130,10 +130,10 @@ def _several_descriptions(seen: Observation) -> Iterator[Diagnostic]:
                 Note(
                     phrase("the descriptions differ; subscribers use the last one")
                     if differ
-                    else phrase("they are the same")
+                    else phrase("the descriptions are the same")
                 ),
             ),
-            hint=phrase("end one of them, or give each robot a namespace of its own"),
+            hint=phrase("stop one of them, or give each robot its own namespace"),
         )
 
 
@@ -155,8 +155,8 @@ def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
             severity=Severity.WARNING,
             notes=(Note(phrase("the robot jumps between their values")),),
             hint=phrase(
-                "end one of them: joint_state_publisher_gui is for descriptions without a robot; beside a driver, "
-                "have it publish to a topic of its own"
+                "stop one of them: joint_state_publisher_gui is for descriptions without a robot; if a "
+                "driver runs too, let it publish to another topic"
             ),
         )
 

@@ -44,7 +44,7 @@ def _same_names(seen: Observation) -> Iterator[Diagnostic]:
                 notes=(
                     Note(phrase("their parameter services answer in turn, and commands reach one of them by chance")),
                 ),
-                hint=phrase("end the one that was left running, or rename one: --ros-args -r __node:=OTHER"),
+                hint=phrase("stop the node that was left running, or rename one: --ros-args -r __node:=OTHER"),
             )
 
 
@@ -74,12 +74,13 @@ def _types(seen: Observation) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "DOC201",
                 phrase(
-                    "topic '{topic}' has {count} types; nodes of different types do not hear each other",
+                    "topic '{topic}' has {count} types; nodes that use different types do not receive each "
+                    "other's messages",
                     topic=topic,
                     count=len(types),
                 ),
                 notes=notes,
-                hint=phrase("give one of them another topic: --ros-args -r OLD:=NEW"),
+                hint=phrase("remap the topic of one of them: --ros-args -r OLD:=NEW"),
             )
 
 
@@ -176,7 +177,7 @@ def _remedy(policy: QoSPolicyKind) -> Phrase:
             "make the publisher transient local, or the subscription volatile (in RViz: the display's "
             "Durability Policy)"
         )
-    return phrase("have the publisher offer more, or the subscription request less")
+    return phrase("let the publisher offer more, or the subscription request less")
 
 
 def _terms(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
@@ -285,13 +286,13 @@ def _two_drivers(seen: Observation) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "DOC208",
             phrase(
-                "two drivers on one topic: {drivers} publish velocities on '{topic}'",
+                "two nodes drive the robot: {drivers} publish velocities on '{topic}'",
                 drivers=listed(drivers_seen.drivers),
                 topic=drivers_seen.topic,
             ),
             severity=Severity.WARNING,
             notes=(Note(phrase("the robot obeys each message in turn, so it jerks between them")),),
-            hint=phrase("end one of them, or let twist_mux choose between them by priority"),
+            hint=phrase("stop one of them, or let twist_mux choose between them by priority"),
         )
 
 

@@ -92,7 +92,9 @@ def write_text(path: Path, text: str, encoding: str = "utf-8") -> None:
         message = phrase(
             "cannot write '{path}': {strerror}", path=display_path(path), strerror=foreign(error.strerror or error)
         )
-        raise LinkwrightError(Diagnostic("LINT201", message, hint=phrase("is the file yours to change?"))) from None
+        raise LinkwrightError(
+            Diagnostic("LINT201", message, hint=phrase("check that you have permission to change the file"))
+        ) from None
 
 
 @dataclass(frozen=True, slots=True)

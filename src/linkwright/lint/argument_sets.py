@@ -190,13 +190,13 @@ class SetCheck:
         names = self._required_arguments(working.given.values, common)
         shown = " ".join(f"{name}:={working.given.values[name]}" for name in names[:_FEW])
         message = (
-            phrase("it gets {values} here, for instance", values=shown)
+            phrase("for instance, it gets {values} here", values=shown)
             if working.given in sets
-            else phrase("it can be expanded with {values}, for instance", values=shown)
+            else phrase("for instance, it can be expanded with {values}", values=shown)
         )
         notes = [Note(message, working.given.span)]
         if len(sets) > 1 and working.given in sets:
-            notes.append(Note(phrase("it is checked with the {count} sets of values that are given", count=len(sets))))
+            notes.append(Note(phrase("it is checked with the {count} given sets of values", count=len(sets))))
         yield _needs_arguments(default.checked, names, tuple(notes))
 
     def _required_arguments(self, values: Mapping[str, str], common: frozenset[Key]) -> list[str]:

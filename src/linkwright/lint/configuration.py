@@ -48,8 +48,8 @@ _KINDS = {
     bool: phrase("true or false"),
     int: phrase("an integer"),
     float: phrase("a number"),
-    str: phrase("a text"),
-    list: phrase("a list of texts"),
+    str: phrase("a string"),
+    list: phrase("a list of strings"),
 }
 
 
@@ -118,7 +118,7 @@ def _syntax_error(source: SourceText, error: Exception) -> Diagnostic:
         "LINT101",
         phrase("this is not TOML: {reason}", reason=foreign(f"{reason[:1].lower()}{reason[1:]}")),
         source.span(start),
-        hint=phrase('a value is a text in quotes, a number, true, false, or a list: ignore = ["LW204"]'),
+        hint=phrase('write a string in quotes, a number, true, false, or a list, such as ignore = ["LW204"]'),
         source=source,
     )
 
@@ -163,7 +163,7 @@ class _Reader:
         if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
             self._wrong(
                 path,
-                phrase("is not a list of texts"),
+                phrase("is not a list of strings"),
                 phrase('write {written} = ["LW204", "limit-inverted"]', written=_written(path[-1])),
             )
             return ()
@@ -182,7 +182,7 @@ class _Reader:
             selector = self._selector(path, key, key)
             if value not in words:
                 hint = did_you_mean(str(value), words) or phrase(
-                    "it is one of {words}; to silence, use ignore", words=joined(words)
+                    "use one of {words}; to silence a rule, use ignore", words=joined(words)
                 )
                 self._wrong(path, phrase("is not a severity"), hint, shown=value)
             elif selector:

@@ -212,7 +212,7 @@ def _of_library(described: Description) -> Iterator[Diagnostic]:
     whole = root.span()
     yield from (each for each in described.reading.diagnostics if each.code in TRUE_OF_PARTS and each.span != whole)
     hint = phrase("check the file that includes it")
-    message = phrase("this file has parts for others to include and is not a robot by itself")
+    message = phrase("this file only has parts for other files to include, and is not a robot by itself")
     yield Diagnostic("LINT302", message, whole, Severity.INFO, hint=hint, source=root.source)
 
 

@@ -37,7 +37,7 @@ def _of_built(diagnostic: Diagnostic) -> Diagnostic | None:
     package = find_package(path.parent)
     if package is None or not is_made_later(package, path.relative_to(package.folder).as_posix()):
         return None
-    hint = phrase("the build or a program makes it; until then the parts that need it are left out")
+    hint = phrase("the build or another program creates it; until then, the parts that need it are left out")
     return diagnostic.with_changes(severity=Severity.INFO, hint=hint)
 
 
@@ -49,7 +49,7 @@ def _of_package_folder(diagnostic: Diagnostic) -> Diagnostic | None:
     if package is None or not (package.folder / written).is_file():
         return None
     beside = Path(os.path.relpath(package.folder / written, folder)).as_posix()
-    hint = phrase("xacro looks from the folder of this file: write '{path}'", path=beside)
+    hint = phrase("xacro resolves the path from the folder of this file: write '{path}'", path=beside)
     return diagnostic.with_changes(severity=Severity.WARNING, hint=hint)
 
 

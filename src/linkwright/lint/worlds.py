@@ -134,7 +134,7 @@ def _axes(models: Iterable[Model]) -> Iterator[Diagnostic]:
             place = joint.element.first(tag)
             xyz = place.first("xyz") if place is not None else None
             message = phrase("the axis of {owner} has no direction", owner=described(joint.element))
-            found = _warning("SDF122", message, xyz or joint.element, phrase("write 0 0 1, or its direction"))
+            found = _warning("SDF122", message, xyz or joint.element, phrase("write its direction, such as 0 0 1"))
             if joint.type == "fixed":
                 fixed.setdefault(found.span, found)
             else:

@@ -129,7 +129,7 @@ class HugeSize(Rule):
                 what = type(shape.geometry).__name__.lower()
                 yield self.report(
                     phrase(
-                        "the {shape} {what} of link '{name}' is {size:g} m large",
+                        "the {shape} {what} of link '{name}' measures {size:g} m",
                         shape=term(kind_of(shape)),
                         what=what,
                         name=link.name,
@@ -226,8 +226,12 @@ class SeveralShapes(Rule):
                             attributes=link.attributes.get("name", ""),
                         ),
                         extra,
-                        notes=[Note(phrase("only this <{tag}> is read", tag=found[0].tag), found[0].span())],
-                        hint=phrase("give it a <{tag}> of its own", tag=shape.tag),
+                        notes=[
+                            Note(
+                                phrase("only the first shape, this <{tag}>, is read", tag=found[0].tag), found[0].span()
+                            )
+                        ],
+                        hint=phrase("write a separate <{tag}> for it", tag=shape.tag),
                     )
 
 

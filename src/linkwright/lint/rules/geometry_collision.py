@@ -75,7 +75,7 @@ class MissingCollision(Rule):
                 phrase("link '{name}' is visible but has no collision shape, unlike other links", name=link.name),
                 link.element,
                 "name",
-                hint=phrase("add a <collision>, best with a simple shape around it"),
+                hint=phrase("add a <collision>, preferably with a simple shape around the visuals"),
             )
 
 
@@ -174,9 +174,9 @@ def _origin_hint(link: Link, seen: Bounds) -> Phrase:
     If both have the same <origin>, the mesh is away from its own origin.
     """
     if link.visuals[0].origin.xyz != link.collisions[0].origin.xyz:
-        return phrase("give both the same <origin>")
+        return phrase("give visuals and collisions the same <origin>")
     center = " ".join(f"{part:.3g}" for part in seen.center)
-    return phrase("the middle of the visuals is at {center} in the link frame", center=center)
+    return phrase("the centre of the visuals is at {center} in the link frame", center=center)
 
 
 class CollisionSize(Rule):

@@ -131,7 +131,7 @@ class ZeroMass(Rule):
             phrase("the mass of link '{name}' is zero", name=name),
             part(inertial, "mass"),
             "value",
-            hint=phrase("give its mass in kg, or leave <inertial> out where the link is only a frame"),
+            hint=phrase("give its mass in kg, or leave <inertial> out if the link is only a frame"),
         )
 
 
@@ -212,7 +212,7 @@ class TinyMass(Rule):
                 part(inertial, "mass"),
                 "value",
                 notes=[Note(name_others([other.name for other, *_ in others]))] if others else [],
-                hint=phrase("masses are in kg; a moving link needs one that a solver can work with"),
+                hint=phrase("masses are in kg; give the link a mass that solvers can work with"),
             )
 
 
@@ -295,7 +295,9 @@ class RootInertia(Rule):
             yield self.report(
                 phrase("root link '{root}' has an inertia, which KDL ignores with a warning", root=robot.root),
                 inertial.element,
-                hint=phrase("put an empty link above it with a fixed joint, such as 'base_footprint'"),
+                hint=phrase(
+                    "add an empty link above it, such as 'base_footprint', and connect them with a fixed joint"
+                ),
             )
 
 

@@ -170,7 +170,7 @@ class TinyInertia(Rule):
                         moment=moment,
                     ),
                     part(holders[0].inertial, "inertia"),
-                    hint=phrase("simulate with more, or give the joint damping"),
+                    hint=phrase("simulate with a larger inertia, or give the joint damping"),
                 )
 
 

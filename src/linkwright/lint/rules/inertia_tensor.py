@@ -74,7 +74,9 @@ class ZeroInertia(_FlawRule):
                 part(inertial, "inertia"),
                 hint=phrase("`linkwright inertia` computes it from the link's shapes")
                 if link.visuals or link.collisions
-                else phrase("give it that of a small solid of this mass: the link has no shape to compute it from"),
+                else phrase(
+                    "give it the inertia of a small solid of this mass: the link has no shape to compute it from"
+                ),
             )
 
 
@@ -153,7 +155,7 @@ class ExcessiveProduct(_TensorRule):
             ),
             part(inertial, "inertia"),
             flaw.attribute,
-            notes=[Note(phrase("with these moments it is at most {amount:.3g} either way", amount=flaw.amount))],
+            notes=[Note(phrase("with these moments, its magnitude is at most {amount:.3g}", amount=flaw.amount))],
             hint=phrase("check the order ixx ixy ixz iyy iyz izz, and that all are in kg m2"),
         )
 
@@ -236,7 +238,9 @@ class TriangleInequality(_TensorRule):
             part(inertial, "inertia"),
             flaw.attribute if diagonal else None,
             notes=notes,
-            hint=phrase("no body has these moments; `linkwright inertia` computes those of the link's shapes"),
+            hint=phrase(
+                "these moments are not physically possible; `linkwright inertia` computes those of the link's shapes"
+            ),
         )
 
 

@@ -110,7 +110,7 @@ class AxisNotUnit(Rule):
             unit = " ".join(_component(part / length) for part in direction)
             yield self.report(
                 phrase(
-                    "the axis of joint '{name}' is not of length 1 but {length}: '{xyz}'",
+                    "the axis of joint '{name}' has length {length}, not 1: '{xyz}'",
                     name=joint.name,
                     length=format_number(length),
                     xyz=axis.attributes["xyz"].strip(),
@@ -161,7 +161,7 @@ class AxisImplicit(Rule):
                         "{type} joint '{name}' has no <axis>, so it turns about x", type=joint.type, name=joint.name
                     ),
                     element,
-                    hint=phrase('add <axis xyz="0 0 1"/>, or <axis xyz="1 0 0"/> if x is meant'),
+                    hint=phrase('add <axis xyz="0 0 1"/>, or <axis xyz="1 0 0"/> if x is intended'),
                 )
 
 
@@ -201,7 +201,7 @@ class AxisOnFixed(Rule):
                 yield self.report(
                     phrase("{type} joint '{name}' has an <axis>, which is not read", type=joint.type, name=joint.name),
                     axis,
-                    hint=phrase("remove it, or give the joint the type it was written for"),
+                    hint=phrase("remove it, or change the type of the joint"),
                     fix=remove_element(axis),
                 )
 

@@ -66,7 +66,7 @@ class SoftLimitsOutside(Rule):
         below = end == "lower"
         return self.report(
             phrase(
-                "'{name}' of joint '{joint_name}' is {side} its limit: {soft}, where '{end}' is {limit}",
+                "'{name}' of joint '{joint_name}' is {side} its limit: {soft}, but '{end}' is {limit}",
                 name=name,
                 joint_name=joint.name,
                 side=phrase("below") if below else phrase("above"),
@@ -77,7 +77,7 @@ class SoftLimitsOutside(Rule):
             safety,
             name,
             hint=phrase(
-                "it acts before the limit: {side} than {limit}",
+                "a soft limit acts before the limit: write a value {side} than {limit}",
                 side=phrase("more") if below else phrase("less"),
                 limit=format_number(limit),
             ),
@@ -179,7 +179,9 @@ class SafetyGainNegative(Rule):
                         ),
                         safety,
                         name,
-                        hint=phrase("it drives the joint towards its limit: write {value}", value=format_number(-gain)),
+                        hint=phrase(
+                            "a negative gain drives the joint towards its limit: write {value}", value=format_number(-gain)
+                        ),
                     )
 
 
@@ -224,7 +226,7 @@ class DynamicsNegative(Rule):
                         ),
                         dynamics,
                         name,
-                        hint=phrase("it feeds energy into the joint: write {value}", value=format_number(-size)),
+                        hint=phrase("a negative value feeds energy into the joint: write {value}", value=format_number(-size)),
                         fix=Fix((edit,), safe=False) if edit else None,
                     )
 
@@ -302,8 +304,8 @@ class CalibrationOutside(Rule):
                 if place is not None and not lower - _SLACK <= place <= upper + _SLACK:
                     yield self.report(
                         phrase(
-                            "'{name}' of joint '{joint_name}' is outside its limits: {place}, where it goes from"
-                            " {lower} to {upper}",
+                            "'{name}' of joint '{joint_name}' is outside its limits: {place}, but the range is {lower} "
+                            "to {upper}",
                             name=name,
                             joint_name=joint.name,
                             place=format_number(place),

@@ -69,7 +69,7 @@ class MimicOnFixed(Rule):
                         "fixed joint '{name}' cannot follow '{joint}'", name=joint.name, joint=mimic.attributes["joint"]
                     ),
                     mimic,
-                    hint=phrase("remove <mimic>, or give the joint the type of the one it follows"),
+                    hint=phrase("remove <mimic>, or give the joint the type of the joint it follows"),
                     fix=remove_element(mimic, safe=False),
                 )
 
@@ -146,7 +146,7 @@ class MimicStandsStill(Rule):
                     ),
                     mimic,
                     "multiplier",
-                    hint=phrase("give the factor, or make the joint fixed"),
+                    hint=phrase("give a multiplier other than 0, or make the joint fixed"),
                 )
 
 
@@ -188,8 +188,8 @@ class MimicBeyondLimits(Rule):
                 continue
             yield self.report(
                 phrase(
-                    "following '{name}', joint '{joint_name}' goes from {least} to {most}, beyond its limits"
-                    " {lower} to {upper}",
+                    "joint '{joint_name}' follows '{name}' from {least} to {most}, beyond its limits {lower} to "
+                    "{upper}",
                     name=leader.name,
                     joint_name=joint.name,
                     least=format_number(ends[0]),
@@ -199,7 +199,7 @@ class MimicBeyondLimits(Rule):
                 ),
                 mimic,
                 hint=phrase(
-                    'its limits would have to be lower="{ends}" upper="{other_ends}"',
+                    'write lower="{ends}" upper="{other_ends}" to cover that range',
                     ends=format_number(ends[0]),
                     other_ends=format_number(ends[1]),
                 ),
@@ -290,7 +290,7 @@ class MimicOtherKind(Rule):
             turns = joint.type in _TURNING and leader.type in _SLIDING
             slides = joint.type in _SLIDING and leader.type in _TURNING
             if (turns or slides) and joint.mimic is not None and abs(joint.mimic.multiplier) == 1:
-                units = phrase("radian for every metre") if turns else phrase("metre for every radian")
+                units = phrase("radian per metre") if turns else phrase("metre per radian")
                 yield self.report(
                     phrase(
                         "{type} joint '{name}' follows {leader_type} joint '{leader_name}' by one {units}",
@@ -346,7 +346,7 @@ class MimicDrivenByControl(Rule):
                     continue
                 yield self.report(
                     phrase(
-                        "joint '{name}' follows '{joint}' and is commanded by <ros2_control> as well",
+                        "joint '{name}' follows '{joint}', but <ros2_control> also commands it",
                         name=joint.name,
                         joint=joint.mimic.joint,
                     ),

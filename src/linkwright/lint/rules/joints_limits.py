@@ -116,7 +116,7 @@ class LimitEmpty(Rule):
                     ),
                     limit,
                     "lower" if "lower" in limit.attributes else "upper",
-                    hint=phrase("give the range it has, or make the joint 'fixed'"),
+                    hint=phrase("give the range of the joint, or make it 'fixed'"),
                     severity=Severity.INFO if ends[0] == 0 and _SENSOR.search(f"{joint.name} {joint.child}") else None,
                 )
 
@@ -206,13 +206,13 @@ class LimitOneBound(Rule):
             if len(missing) == 1:
                 yield self.report(
                     phrase(
-                        "<limit> of {type} joint '{name}' has no '{missing}', which then is 0",
+                        "<limit> of {type} joint '{name}' has no '{missing}', which is then 0",
                         type=joint.type,
                         name=joint.name,
                         missing=missing[0],
                     ),
                     limit,
-                    hint=phrase('add {missing}="0" if that is meant', missing=missing[0]),
+                    hint=phrase('add {missing}="0" if 0 is intended', missing=missing[0]),
                     fix=add_attribute(limit, missing[0], "0"),
                 )
 
@@ -294,7 +294,7 @@ class LimitOnFixed(Rule):
             yield self.report(
                 phrase("fixed joint '{name}' has a <limit>", name=joint.name),
                 limit,
-                hint=phrase("remove it, or give the joint the type it was written for"),
+                hint=phrase("remove it, or change the type of the joint"),
                 fix=remove_element(limit),
             )
 
@@ -331,7 +331,7 @@ class ZeroOutsideLimits(Rule):
             if ends is not None and ends[0] < ends[1] and (ends[0] > 0 or ends[1] < 0):
                 yield self.report(
                     phrase(
-                        "joint '{name}' cannot be at 0: it goes from {ends} to {other_ends}",
+                        "joint '{name}' cannot be at 0: its range is {ends} to {other_ends}",
                         name=joint.name,
                         ends=format_number(ends[0]),
                         other_ends=format_number(ends[1]),

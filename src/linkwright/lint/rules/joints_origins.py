@@ -151,7 +151,7 @@ class AngleRounded(Rule):
                 edit = value_edit(origin, "rpy", better)
                 yield self.report(
                     phrase(
-                        "'rpy' in <origin> of {owner} rounds a part of pi: '{written}'",
+                        "'rpy' in <origin> of {owner} is a rounded fraction of pi: '{written}'",
                         owner=owner,
                         written=" ".join(written),
                     ),
@@ -204,7 +204,7 @@ class OriginMissing(Rule):
                         parent=joint.parent,
                     ),
                     element,
-                    hint=phrase('add <origin xyz="..." rpy="..."/>, with zeros if that is meant'),
+                    hint=phrase('add <origin xyz="..." rpy="..."/>, with zeros if that is intended'),
                 )
 
 

@@ -117,7 +117,7 @@ class LaunchFunctionMissing(LaunchRule):
         functions = re.findall(r"^def\s+(\w+)", file.source.text, re.MULTILINE)
         like = next(iter(nearest(FUNCTION, functions, 1)), None)
         hint = (
-            phrase("'{like}' is misspelt", like=like)
+            phrase("'{like}' looks misspelt", like=like)
             if like
             else phrase("define {function}(), which returns a LaunchDescription", function=FUNCTION)
         )
@@ -220,6 +220,6 @@ def _like(package: PackageContext, shared: SharedFile) -> Phrase | None:
     name = shared.path.rpartition("/")[2]
     same = [file for file in package.files if file.rpartition("/")[2] == name]
     if same:
-        return phrase("there is '{same}'", same=same[0])
+        return phrase("did you mean '{same}'?", same=same[0])
     like = nearest(shared.path, package.files, 1)
     return phrase("did you mean {names}?", names=quoted(like[0])) if like else None

@@ -134,7 +134,11 @@ class LaunchedExecutableUnknown(PackageRule):
             if like:
                 hint = phrase("did you mean {names}?", names=quoted(like))
             else:
-                hint = phrase("it has {known}", known=joined(sorted(known))) if known else phrase("it has none")
+                hint = (
+                    phrase("the package has {known}", known=joined(sorted(known)))
+                    if known
+                    else phrase("the package has no executables")
+                )
             message = phrase("the package '{name}' has no executable '{text}'", name=name, text=node.executable.text)
             yield self.report(message, span=node.executable.span, source=file.source, hint=hint)
 

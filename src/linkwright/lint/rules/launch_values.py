@@ -75,8 +75,8 @@ class CommandWithoutBlank(LaunchRule):
             program, following = parts.elts[0], parts.elts[1]
             if not _is_program(program, python) or _begins_with_blank(following, python):
                 continue
-            message = phrase("there is no blank between the program and its argument")
-            hint = phrase("Command joins its parts as they are: write 'xacro ' with a blank at its end")
+            message = phrase("there is no space between the program and its argument")
+            hint = phrase("Command joins its parts without spaces: write 'xacro ' with a space at the end")
             yield self.report(
                 message, span=python.span(program), source=file.source, hint=hint, fix=_blank_fix(program, python)
             )
@@ -122,7 +122,7 @@ class DescriptionNotTyped(Rule):
                 continue
             path, reason = refused
             message = phrase(
-                "launch reads this description as YAML, but '{path}' is not a YAML text: {reason}",
+                "launch reads this description as YAML, but '{path}' is not valid YAML: {reason}",
                 path=path,
                 reason=foreign(reason),
             )

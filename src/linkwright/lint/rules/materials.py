@@ -96,8 +96,10 @@ class RedefinedMaterial(Rule):
                 ),
                 element,
                 "name",
-                notes=[Note(phrase("the first definition, '{look}', holds", look=_look(known)), known.element.span())],
-                hint=phrase("give this one a name of its own, or leave its colour out"),
+                notes=[
+                    Note(phrase("the first definition, '{look}', is used", look=_look(known)), known.element.span())
+                ],
+                hint=phrase("give this material another name, or leave its colour out"),
                 severity=Severity.INFO if _looks_alike(known, material) else None,
             )
 
@@ -313,14 +315,14 @@ class AlikeNames(Rule):
                 reported.add(material.name)
                 yield self.report(
                     phrase(
-                        "material '{name}' differs from '{known_name}' in capitals only",
+                        "material '{name}' differs from '{known_name}' only in upper and lower case",
                         name=material.name,
                         known_name=known.name,
                     ),
                     material.element,
                     "name",
                     notes=[Note(phrase("'{name}' is defined here", name=known.name), _place(known.element))],
-                    hint=phrase("use one name"),
+                    hint=phrase("use the same name in both places"),
                 )
 
 

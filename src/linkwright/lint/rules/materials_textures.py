@@ -70,7 +70,11 @@ class MissingTexture(Rule):
                 hint = file_hint(path, _IMAGE_ENDINGS)
                 twin = case_twin(path.absolute())
                 if twin is not None:
-                    notes.append(Note(phrase("the file is '{name}', with other capitals", name=twin.name)))
+                    notes.append(
+                        Note(
+                            phrase("the file is named '{name}', which differs in upper and lower case", name=twin.name)
+                        )
+                    )
             message = phrase("there is no image '{uri}' for this texture", uri=uri)
             yield self.report(message, element, "filename", notes=notes, hint=hint)
 

@@ -64,7 +64,7 @@ class ZeroScale(Rule):
             if 0 in use.mesh.scale:
                 yield self.report(
                     phrase(
-                        "the scale of the {kind} mesh '{file_name}' of link '{name}' has a zero",
+                        "the scale of the {kind} mesh '{file_name}' of link '{name}' contains a zero",
                         kind=use.kind,
                         file_name=file_name(use),
                         name=use.link.name,
@@ -161,7 +161,7 @@ class UnevenScale(Rule):
                     ),
                     use.element,
                     "scale",
-                    hint=phrase("for another unit all three factors are the same"),
+                    hint=phrase("to convert units, give all three factors the same value"),
                 )
 
 
@@ -199,7 +199,7 @@ class Millimetres(Rule):
                 scale = " ".join(f"{factor * 0.001:g}" for factor in use.mesh.scale)
                 yield self.report(
                     phrase(
-                        "the {kind} mesh '{file_name}' of link '{name}' is {edge:.4g} m large",
+                        "the {kind} mesh '{file_name}' of link '{name}' measures {edge:.4g} m",
                         kind=use.kind,
                         file_name=file_name(use),
                         name=use.link.name,
@@ -247,7 +247,7 @@ class TooSmall(Rule):
                 scale = " ".join(f"{factor * 1000:g}" for factor in use.mesh.scale)
                 yield self.report(
                     phrase(
-                        "the {kind} mesh '{file_name}' of link '{name}' is {edge:.3g} mm large",
+                        "the {kind} mesh '{file_name}' of link '{name}' measures only {edge:.3g} mm",
                         kind=use.kind,
                         file_name=file_name(use),
                         name=use.link.name,

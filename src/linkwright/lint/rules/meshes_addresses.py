@@ -256,9 +256,9 @@ class AwkwardName(Rule):
             name = uri.partition("://")[2].partition("/")[2] if uri.startswith("package://") else uri.rpartition("/")[2]
             if uri.strip() and (" " in name or not name.isascii()):
                 yield self.report(
-                    phrase("the mesh address '{uri}' has a blank", uri=uri)
+                    phrase("the mesh address '{uri}' contains a space", uri=uri)
                     if " " in name
-                    else phrase("the mesh address '{uri}' has letters beyond ASCII", uri=uri),
+                    else phrase("the mesh address '{uri}' contains letters outside ASCII", uri=uri),
                     use.element,
                     "filename",
                     hint=phrase("rename the file with letters, digits and underscores"),
@@ -272,9 +272,9 @@ def uri_problem(uri: str) -> tuple[str | None, str | None]:
         return phrase("is empty"), None
     if "\\" in uri:
         better = uri.replace("\\", "/")
-        return phrase("has backslashes"), better if uri_problem(better)[0] is None else None
+        return phrase("contains backslashes"), better if uri_problem(better)[0] is None else None
     if uri != uri.strip():
-        return phrase("has blanks around it"), uri.strip()
+        return phrase("has spaces around it"), uri.strip()
     match = _SCHEME.match(uri)
     if match is None:
         return None, None
@@ -292,7 +292,7 @@ def uri_problem(uri: str) -> tuple[str | None, str | None]:
             return None, None
         return phrase("has no absolute path"), f"file:///{rest.lstrip('/')}" if not rest.startswith("//") else None
     if scheme.lower() in ("package", "file"):
-        return phrase("has its scheme in capitals"), f"{scheme.lower()}:{rest}"
+        return phrase("has its scheme in upper case"), f"{scheme.lower()}:{rest}"
     if scheme in ("model", "http", "https"):
         return None, None
     return phrase("has the unknown scheme '{scheme}'", scheme=scheme), None
@@ -331,7 +331,7 @@ def file_hint(path: Path, endings: Sequence[str]) -> Phrase:
     if near or not names:
         return near or phrase("put the file there, or correct the address")
     shown = names[:8] if len(names) <= 8 else [*names[:8], "..."]
-    return phrase("available: {names}", names=joined(shown))
+    return phrase("choose from {names}", names=joined(shown))
 
 
 def normalized_path(path: Path) -> str:

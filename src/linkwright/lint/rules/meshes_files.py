@@ -182,7 +182,7 @@ class MissingFile(Rule):
                     phrase("there is no mesh file '{filename}'", filename=use.mesh.filename),
                     use.element,
                     "filename",
-                    notes=[Note(phrase("it would be {path}", path=display_path(path)))],
+                    notes=[Note(phrase("its path would be {path}", path=display_path(path)))],
                     hint=file_hint(path, KNOWN),
                 )
 
@@ -221,12 +221,14 @@ class WrongCase(Rule):
             better = _with_case(use.mesh.filename, twin)
             yield self.report(
                 phrase(
-                    "the mesh file is '{name}', with other capitals than '{path_name}'",
+                    "the mesh file is named '{name}', which differs from '{path_name}' in upper and lower case",
                     name=twin.name,
                     path_name=path.name,
                 )
                 if twin.name != path.name
-                else phrase("a folder of the mesh file '{name}' has other capitals", name=path.name),
+                else phrase(
+                    "a folder in the path of the mesh file '{name}' differs in upper and lower case", name=path.name
+                ),
                 use.element,
                 "filename",
                 hint=phrase("write '{better}'", better=better),
@@ -282,7 +284,7 @@ class OutsidePackage(Rule):
                     message,
                     use.element,
                     "filename",
-                    notes=[Note(phrase("it is {resolved}", resolved=display_path(resolved)))],
+                    notes=[Note(phrase("its path is {resolved}", resolved=display_path(resolved)))],
                     hint=phrase("move it into a folder of the package that is installed"),
                 )
 
@@ -318,7 +320,7 @@ class UnreadableMesh(Rule):
             if problem is None or problem.diagnostics[0].code != "INR103":
                 continue
             found = problem.diagnostics[0]
-            hint = phrase("it is a pointer of Git LFS: run `git lfs pull`") if is_pointer_file(path) else found.hint
+            hint = phrase("it is a Git LFS pointer: run `git lfs pull`") if is_pointer_file(path) else found.hint
             yield self.report(found.message, use.element, "filename", hint=hint)
 
 

@@ -63,13 +63,13 @@ class BaseLinkMissing(Rule):
             Note(phrase("'{name}' is a wheel", name=joint.name), joint.element.span() if joint.element else None)
             for joint in wheels[:2]
         ]
-        message = phrase("this robot on wheels has no link 'base_link', which REP 105 requires")
+        message = phrase("this wheeled robot has no link 'base_link', which REP 105 requires")
         yield self.report(
             message,
             root.element,
             "name",
             notes=notes,
-            hint=phrase("call '{name}' base_link, or add one", name=root.name),
+            hint=phrase("rename '{name}' to base_link, or add a link with that name", name=root.name),
         )
 
 
@@ -207,7 +207,9 @@ class FootprintHasBody(Rule):
             if part is None and not is_root and link.inertial is not None and link.inertial.mass > 0.1:
                 part = link.element.first("inertial")
             if part is not None:
-                message = phrase("'{name}' is a place on the ground, and has a <{tag}>", name=link.name, tag=part.tag)
+                message = phrase(
+                    "'{name}' marks a place on the ground, but has a <{tag}>", name=link.name, tag=part.tag
+                )
                 hint = phrase("move it to the link of the body, such as 'base_link'")
                 severity = Severity.INFO if link.visuals else None
                 yield self.report(message, part, hint=hint, severity=severity)

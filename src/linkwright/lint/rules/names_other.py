@@ -44,8 +44,8 @@ class JointNameIsLinkName(Rule):
         for kind, name, element in named(subject):
             if kind == "joint" and name in links:
                 note = Note(phrase("the link is defined here"), links[name].attribute_span("name"))
-                hint = phrase("call the joint '{name}_joint'", name=name.removesuffix("_link"))
-                message = phrase("a joint and a link are both called '{name}', which SDF does not allow", name=name)
+                hint = phrase("name the joint '{name}_joint'", name=name.removesuffix("_link"))
+                message = phrase("a joint and a link are both named '{name}', which SDF does not allow", name=name)
                 yield self.report(message, element, "name", notes=[note], hint=hint)
 
 
@@ -80,7 +80,7 @@ class RobotNameUnusual(Rule):
             return
         better = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
         hint = (
-            phrase("such as '{better}'", better=better)
+            phrase("use a name such as '{better}'", better=better)
             if better
             else phrase("use letters a to z, digits and underscores")
         )

@@ -54,7 +54,7 @@ class NameEdgeBlank(Rule):
         for kind, name, element in named(subject):
             if name != name.strip():
                 message = phrase(
-                    "the name of the {kind} '{name}' begins or ends with a blank", kind=term(kind), name=name
+                    "the name of the {kind} '{name}' begins or ends with a space", kind=term(kind), name=name
                 )
                 yield self.report(
                     message, element, "name", hint=phrase("write '{name}' in all places", name=name.strip())
@@ -92,7 +92,7 @@ class NameBlank(Rule):
             if re.search(r"\s", inner):
                 hint = phrase("write '{sub}' in all places", sub=re.sub(chr(92) + "s+", "_", inner))
                 yield self.report(
-                    phrase("the name of the {kind} '{name}' has a blank in it", kind=term(kind), name=name),
+                    phrase("the name of the {kind} '{name}' contains a space", kind=term(kind), name=name),
                     element,
                     "name",
                     hint=hint,
@@ -167,7 +167,7 @@ class NameNotAscii(Rule):
             if strange:
                 listed = ", ".join(f"'{character}' (U+{ord(character):04X})" for character in strange)
                 message = phrase(
-                    "the name of the {kind} '{name}' has letters outside ASCII: {listed}",
+                    "the name of the {kind} '{name}' contains letters outside ASCII: {listed}",
                     kind=term(kind),
                     name=name,
                     listed=listed,
@@ -205,7 +205,7 @@ class NameUnusualCharacter(Rule):
             strange = sorted({sign for sign in name if sign.isascii() and not _USUAL.fullmatch(sign)})
             if strange and "${" not in name and "$(" not in name and not any(sign.isspace() for sign in strange):
                 message = phrase(
-                    "the name of the {kind} '{name}' has unusual characters in it: {strange}",
+                    "the name of the {kind} '{name}' contains unusual characters: {strange}",
                     kind=term(kind),
                     name=name,
                     strange=" ".join(strange),
@@ -328,4 +328,4 @@ class NameSuffixDoubled(Rule):
                     match=match[1],
                 )
                 shorter = name[: -len(match[1]) - 1]
-                yield self.report(message, element, "name", hint=phrase("'{shorter}' is enough", shorter=shorter))
+                yield self.report(message, element, "name", hint=phrase("write '{shorter}'", shorter=shorter))

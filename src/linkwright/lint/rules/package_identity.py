@@ -65,11 +65,13 @@ class PackageNameDiffers(PackageRule):
         element = manifest.root.first("name")
         if name is None or element is None:
             return
-        note = Note(phrase("package.xml says '{name}'", name=name), element.span())
+        note = Note(phrase("the name in package.xml is '{name}'", name=name), element.span())
         setup, cmake = package.setup, package.cmake
         if setup is not None and setup.name is not None and setup.name[0].replace("-", "_") != name.replace("-", "_"):
             message = phrase(
-                "setup.py calls the package '{name}', package.xml '{other_name}'", name=setup.name[0], other_name=name
+                "setup.py names the package '{name}', but package.xml names it '{other_name}'",
+                name=setup.name[0],
+                other_name=name,
             )
             yield self.report(
                 message, span=setup.name[1], source=setup.source, notes=[note], hint=phrase("write '{name}'", name=name)
@@ -78,7 +80,7 @@ class PackageNameDiffers(PackageRule):
             project = cmake.project
             if "$" not in project.text and project.text != name:
                 message = phrase(
-                    "CMakeLists.txt calls the project '{text}', package.xml the package '{name}'",
+                    "CMakeLists.txt names the project '{text}', but package.xml names the package '{name}'",
                     text=project.text,
                     name=name,
                 )
@@ -163,7 +165,7 @@ class FolderNameDiffers(PackageRule):
         element = manifest.root.first("name")
         if manifest.name is not None and element is not None and manifest.name != package.folder.name:
             message = phrase(
-                "the package '{name}' is in a folder called '{folder_name}'",
+                "the package '{name}' is in a folder named '{folder_name}'",
                 name=manifest.name,
                 folder_name=package.folder.name,
             )
@@ -262,4 +264,8 @@ class ManifestPlaceholder(ManifestRule):
 def _advice(tag: str) -> Phrase:
     if tag == "license":
         return phrase("name it by its SPDX identifier, such as Apache-2.0, MIT or BSD-3-Clause")
-    return phrase("say in a sentence what the package is for") if tag == "description" else phrase("write your name")
+    return (
+        phrase("describe the purpose of the package in a sentence")
+        if tag == "description"
+        else phrase("write your name")
+    )

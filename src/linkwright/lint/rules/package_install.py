@@ -221,7 +221,7 @@ class FileNotInstalled(PackageRule):
                     message,
                     span=pattern.span,
                     source=setup.source,
-                    hint=phrase("such as glob('{folder}/*')", folder=folder),
+                    hint=phrase("write for example glob('{folder}/*')", folder=folder),
                 )
 
 

@@ -176,7 +176,7 @@ class ManifestVersion(ManifestRule):
             yield self.report(
                 phrase("the version '{version}' is not three numbers separated by dots", version=version),
                 element,
-                hint=phrase("such as 1.0.0"),
+                hint=phrase("write a version such as 1.0.0"),
             )
 
 
@@ -220,7 +220,7 @@ class DependencyRepeated(ManifestRule):
                 first = generic.get(dependency.name, dependency)
             if first is not dependency and _same_condition(first.element.attributes, dependency.element.attributes):
                 note = Note(phrase("<{tag}> is here", tag=first.tag), first.element.span())
-                message = phrase("the dependency on '{name}' is named again", name=dependency.name)
+                message = phrase("the dependency on '{name}' is listed twice", name=dependency.name)
                 fix = remove_element(dependency.element)
                 harmless = Severity.INFO if first.tag == dependency.tag else None
                 yield self.report(
@@ -308,11 +308,11 @@ class BuildTypeDiffers(PackageRule):
         element = (export and export.first("build_type")) or export or manifest.root
         if build_type:
             message = phrase(
-                "the build type is '{build_type}', and the package has a {file}", build_type=build_type, file=there
+                "the build type is '{build_type}', but the package has a {file}", build_type=build_type, file=there
             )
         else:
             message = phrase(
-                "the build type is not given, which means catkin, and the package has a {file}", file=there
+                "the build type is not given, which means catkin, but the package has a {file}", file=there
             )
         yield self.report(
             message, element, hint=phrase("write <build_type>{right}</build_type> in <export>", right=right)

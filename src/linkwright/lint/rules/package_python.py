@@ -90,9 +90,9 @@ class MarkerMissing(PackageRule):
         hint = (
             phrase("rename '{others}'", others=others[0])
             if len(others) == 1
-            else phrase("make an empty file '{marker}'", marker=marker)
+            else phrase("create an empty file '{marker}'", marker=marker)
         )
-        message = phrase("setup.py installs the marker '{marker}', which does not exist", marker=marker)
+        message = phrase("setup.py installs the marker file '{marker}', which does not exist", marker=marker)
         yield self.report(message, span=wants.span, source=setup.source, hint=hint)
 
 
@@ -133,12 +133,12 @@ class MarkerNotInstalled(PackageRule):
             return
         marked = any(item.destination == _MARKERS or item.text.startswith("resource/") for item in setup.installed)
         if not marked:
-            message = phrase("setup.py does not install the marker of the package '{name}'", name=package.name)
+            message = phrase("setup.py does not install the marker file of the package '{name}'", name=package.name)
             hint = (
                 phrase("add ('{markers}', ['resource/{name}']) to data_files", markers=_MARKERS, name=package.name)
                 if (package.folder / "resource" / package.name).is_file()
                 else phrase(
-                    "make an empty file 'resource/{name}', and add ('{markers}', ['resource/{name}']) to data_files",
+                    "create an empty file 'resource/{name}', and add ('{markers}', ['resource/{name}']) to data_files",
                     markers=_MARKERS,
                     name=package.name,
                 )
@@ -275,7 +275,7 @@ class SetupCfgDiffers(PackageRule):
         source = package.text("setup.cfg")
         if source is None:
             message = phrase("without a setup.cfg, ros2 run does not find the executables of this package")
-            hint = phrase("write one with install_scripts={wanted} in [install]", wanted=wanted)
+            hint = phrase("write a setup.cfg with install_scripts={wanted} in [install]", wanted=wanted)
             yield self.report(message, span=setup.entry_points[0].span, source=setup.source, hint=hint)
             return
         for match in _SCRIPT_FOLDERS.finditer(source.text):

@@ -100,7 +100,7 @@ class UnknownAttribute(Rule):
                 phrase("'{attribute}' in {place} is not read", attribute=attribute, place=place),
                 place.element,
                 span=attribute_name_span(place.element, attribute),
-                hint=phrase("known here: {known}", known=known)
+                hint=phrase("only {known} can be used here", known=known)
                 if known
                 else phrase("<{tag}> has no attributes", tag=place.rule.tag),
             )

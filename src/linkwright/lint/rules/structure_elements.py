@@ -169,7 +169,7 @@ class UnknownElement(Rule):
                 yield self.report(
                     phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(place)),
                     child,
-                    hint=phrase("known here: {known}", known=known)
+                    hint=phrase("only {known} can be used here", known=known)
                     if known
                     else phrase("<{tag}> has no child elements", tag=place.rule.tag),
                 )

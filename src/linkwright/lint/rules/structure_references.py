@@ -322,7 +322,7 @@ class ControlJointRepeated(Rule):
                         joint,
                         "name",
                         hint=phrase("write all its interfaces in one <joint>"),
-                        notes=(Note(phrase("first here"), before.span()),),
+                        notes=(Note(phrase("it is listed first here"), before.span()),),
                     )
 
 

@@ -121,8 +121,8 @@ class DisconnectedPart(Rule):
                 message,
                 element,
                 hint=phrase(
-                    'add <joint name="{root}_joint" type="fixed"><parent link="{main}"/><child'
-                    ' link="{root}"/></joint>, with the parent it hangs from',
+                    'add <joint name="{root}_joint" type="fixed"><parent link="{main}"/><child '
+                    'link="{root}"/></joint>, with the intended parent',
                     root=root,
                     main=main,
                 ),
@@ -204,7 +204,7 @@ class NewerVersion(Rule):
                 phrase("URDF version '{written}' is refused by the urdfdom of ROS 2 Jazzy and older", written=written),
                 subject.root,
                 "version",
-                hint=phrase('write version="1.0" where nothing newer is used'),
+                hint=phrase('write version="1.0" if the file uses nothing newer'),
             )
 
 

@@ -119,7 +119,9 @@ class ConstantCondition(XacroRule):
                 value = element.attributes.get("value", "")
                 if value and is_constant(value):
                     message = phrase("the condition of '{tag}' is always '{value}'", tag=element.tag, value=value)
-                    hint = phrase("make it an argument, or remove the tag, with its content if that is never used")
+                    hint = phrase(
+                        "make the condition an argument, or remove the tag, and its content if that is never used"
+                    )
                     yield self.report(message, element, "value", hint=hint)
 
 
@@ -164,7 +166,7 @@ class UndeclaredArgument(XacroRule):
                 for name in sorted(use.found.arguments - known):
                     if f"$(arg {name})" in text:
                         message = phrase(
-                            "nothing declares the argument '{name}', which a branch not taken uses", name=name
+                            "nothing declares the argument '{name}', which a branch that is not taken uses", name=name
                         )
                         hint = phrase('declare it: <xacro:arg name="{name}" default="..."/>', name=name)
                         yield self.report(message, use.element, use.attribute, hint=hint)

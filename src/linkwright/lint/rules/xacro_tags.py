@@ -187,7 +187,7 @@ class XacroNamespaceAddress(Rule):
             if _OLD_ADDRESSES.fullmatch(address):
                 message = phrase("the prefix 'xacro' is declared with an old URI")
             else:
-                message = phrase("the prefix 'xacro' is declared with a URI that is not ROS's")
+                message = phrase("the prefix 'xacro' is declared with a URI other than that of ROS")
             fix = replace_value(root, "xmlns:xacro", ADDRESS)
             hint = phrase('write xmlns:xacro="{address}"', address=ADDRESS)
             yield self.report(message, root, "xmlns:xacro", hint=hint, fix=fix)
@@ -223,8 +223,8 @@ class IncludeAbsolutePath(XacroRule):
         for file in facts.own.values():
             for include in file.includes:
                 if _ABSOLUTE.match(include.name):
-                    message = phrase("the included file '{name}' is named by an absolute path", name=include.name)
-                    hint = phrase("name it relative to this file, or with $(find PACKAGE)")
+                    message = phrase("the file '{name}' is included by an absolute path", name=include.name)
+                    hint = phrase("write a path relative to this file, or $(find PACKAGE)/...")
                     yield self.report(message, include.element, "filename", hint=hint)
 
 
@@ -270,7 +270,7 @@ class IncludeOutsidePackage(XacroRule):
                             name=include.name,
                             package_name=package.name,
                         )
-                        hint = phrase("name it with $(find PACKAGE)/...")
+                        hint = phrase("write $(find PACKAGE)/...")
                         yield self.report(message, include.element, "filename", hint=hint)
 
 
@@ -445,7 +445,7 @@ class MacroDefinedTwice(XacroRule):
                     continue
                 earlier = first.setdefault((macro.name, id(macro.parents[-1])), macro)
                 if earlier is not macro:
-                    note = Note(phrase("it is defined first here"), earlier.element.attribute_span("name"))
+                    note = Note(phrase("it is first defined here"), earlier.element.attribute_span("name"))
                     message = phrase("the macro '{name}' is defined twice in this file", name=macro.name)
                     yield self.report(
                         message, macro.element, "name", notes=[note], hint=phrase("rename or remove one of them")

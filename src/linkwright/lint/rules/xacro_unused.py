@@ -287,7 +287,7 @@ class UnusedMacroParameter(XacroRule):
                     if parameter.is_block
                     else phrase("the macro '{macro}' does not use its parameter '{name}'", macro=macro.name, name=name)
                 )
-                hint = phrase("use it, or remove it, also from the calls")
+                hint = phrase("use it, or remove it here and in the calls")
                 yield name, self.report(message, macro.element, "params", span=span, hint=hint)
 
 
@@ -363,7 +363,7 @@ def _is_first(definition: Definition, file: FileFacts) -> bool:
 def _hint(name: str, used: frozenset[str], form: str = "${...}") -> Phrase:
     meant = misspelling_of(name, used)
     if meant is not None:
-        return phrase("'{close}' is used: is this one meant? Otherwise remove it", close=meant)
+        return phrase("did you mean '{close}', which is used? Otherwise remove it", close=meant)
     return phrase("use it with {form}, or remove it", form=form)
 
 

@@ -82,7 +82,7 @@ class LiteralChangesType(XacroRule):
             changed=changed,
         )
         hint = phrase(
-            'write {attribute}="{quotes}{value}{quotes}" to keep it as it is',
+            'write {attribute}="{quotes}{value}{quotes}" to keep it unchanged',
             attribute=attribute,
             quotes=quotes,
             value=value,
@@ -133,7 +133,8 @@ class PropertyDefinedTwice(XacroRule):
                             first.element.attribute_span("value"),
                         )
                         message = phrase(
-                            "the property '{name}' gets another value before anything used the first", name=first.name
+                            "the property '{name}' gets another value before anything uses the first one",
+                            name=first.name,
                         )
                         yield self.report(
                             message, second.element, "value", notes=[note], hint=phrase("keep one of the two")
