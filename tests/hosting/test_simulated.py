@@ -89,7 +89,7 @@ async def test_a_robot_with_the_name_of_a_model_of_the_world_ends_it(tmp_path: P
     err = io.StringIO()
     view = SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err))
     assert not await view.run(None)
-    assert "error[SIM102]: there is already a model 'mbot'" in err.getvalue()
+    assert "error[SIM102]: a model 'mbot' already exists" in err.getvalue()
 
 
 def test_a_world_that_is_not_there_is_one_error(capsys):

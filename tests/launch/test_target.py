@@ -87,7 +87,7 @@ class TestWords:
             parse_launch_words([])
 
     def test_a_package_alone(self, package: Path) -> None:
-        with pytest.raises(LinkwrightError, match="'arm' is a package: name a launch file in it too") as caught:
+        with pytest.raises(LinkwrightError, match="'arm' is a package: also name a launch file in it") as caught:
             parse_launch_words(["arm"])
         assert "display.launch.py" in (caught.value.diagnostics[0].hint or "")
 

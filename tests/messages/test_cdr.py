@@ -127,19 +127,19 @@ class TestRefused:
 
     def test_headers(self):
         assert "0 bytes are too few for the header" in self.refused(b"", String)
-        assert "its header says CDR2_LE" in self.refused(b"\0\7\0\0\1\0\0\0\0", String)
+        assert "its header declares CDR2_LE" in self.refused(b"\0\7\0\0\1\0\0\0\0", String)
         assert "it begins with 48 69 21 21" in self.refused(b"Hi!!", String)
 
     def test_a_text_that_is_not_utf_8(self):
-        assert "a text in it is not UTF-8" in self.refused(b"\0\1\0\0\3\0\0\0\xff\xfe\0", String)
+        assert "a string in it is not UTF-8" in self.refused(b"\0\1\0\0\3\0\0\0\xff\xfe\0", String)
 
     def test_a_text_without_its_end(self):
-        assert "the end of a text in it does not match its length" in self.refused(b"\0\1\0\0\2\0\0\0ab", String)
+        assert "the end of a string does not match its length" in self.refused(b"\0\1\0\0\2\0\0\0ab", String)
 
     def test_a_bool_that_is_none(self):
-        assert "a bool in it is 2" in self.refused(b"\0\1\0\0\2", get_message("std_msgs/msg/Bool"))
+        assert "a bool has the value 2" in self.refused(b"\0\1\0\0\2", get_message("std_msgs/msg/Bool"))
         raw = serialize(get_message("test_msgs/msg/UnboundedSequences")(bool_values=[True, False]))
-        assert "a bool in it is 7" in self.refused(raw[:8] + b"\7" + raw[9:],
+        assert "a bool has the value 7" in self.refused(raw[:8] + b"\7" + raw[9:],
                                                    get_message("test_msgs/msg/UnboundedSequences"))  # fmt: skip
 
     def test_more_than_a_bound_allows(self):
@@ -189,7 +189,7 @@ def test_wide_texts_are_units_of_utf_16_in_four_bytes_each_after_their_number():
     assert deserialize(written, cls).data == "a😀"
     assert deserialize(b"\0\0\0\0\0\0\0\2\0\0\0a\0\0\0b", cls).data == "ab"
     assert deserialize(b"\0\1\0\0\0\0\0\0", cls).data == ""
-    with pytest.raises(MessageDataError, match="a unit of 65536; units of UTF-16 are 65535 at most"):
+    with pytest.raises(MessageDataError, match="a unit of 65536; units of UTF-16 are at most 65535"):
         deserialize(b"\0\1\0\0\1\0\0\0\0\0\1\0", cls)
     with pytest.raises(MessageDataError, match="in the middle of the message"):
         deserialize(b"\0\1\0\0\2\0\0\0a\0\0\0", cls)

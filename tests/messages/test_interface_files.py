@@ -138,25 +138,30 @@ class TestFaults:
             ("int32 Max", "MSG112", "F.msg:1:7", "'Max' is not a valid name for a field"),
             ("int32 a__b", "MSG112", "F.msg:1:7", "'a__b' is not a valid name for a field"),
             ("int32 max=5", "MSG113", "F.msg:1:7", "'max' is not a valid name for a constant"),
-            ("int8 x 128", "MSG114", "F.msg:1:8", "the default value of 'x' is wrong: 128 is outside of int8's range"),
+            (
+                "int8 x 128",
+                "MSG114",
+                "F.msg:1:8",
+                "the default value of 'x' is wrong: 128 is outside the range of int8",
+            ),
             ("bool x yes", "MSG114", "F.msg:1:8", "'yes' is neither true nor false"),
             ("int8 x 1.5", "MSG114", "F.msg:1:8", "'1.5' is not an integer"),
-            ("float32 x 1e39", "MSG114", "F.msg:1:11", "1e39 is outside of float32's range"),
+            ("float32 x 1e39", "MSG114", "F.msg:1:11", "1e39 is outside the range of float32"),
             ("float32 x one", "MSG114", "F.msg:1:11", "'one' is not a number"),
-            ("int8[] x 5", "MSG114", "F.msg:1:10", "the default of 'int8[]' is a list in square brackets"),
+            ("int8[] x 5", "MSG114", "F.msg:1:10", "write the default of 'int8[]' as a list in square brackets"),
             ("int8[2] x [1]", "MSG114", "F.msg:1:11", "'int8[2]' takes 2 values, not 1"),
             ("int8[<=1] x [1,2]", "MSG114", "F.msg:1:13", "'int8[<=1]' takes at most 1 values, not 2"),
-            ("string<=2 x abc", "MSG114", "F.msg:1:13", "the text is longer than 2 characters"),
-            ('string x "abc', "MSG114", "F.msg:1:10", 'the text that begins with " does not end with it'),
+            ("string<=2 x abc", "MSG114", "F.msg:1:13", "the string is longer than 2 characters"),
+            ('string x "abc', "MSG114", "F.msg:1:10", 'the string that begins with " does not end with it'),
             ("Other x 5", "MSG114", "F.msg:1:9", "cannot have a default value"),
             ("int8[] X=5", "MSG114", "F.msg:1:8", "the constant 'X' cannot be of type 'int8[]'"),
-            ("uint8 X=-1", "MSG114", "F.msg:1:8", "the value of 'X' is wrong: -1 is outside of uint8's range"),
-            ("int8 x\nint8 x", "MSG115", "F.msg:2:6", "there are two 'x'"),
+            ("uint8 X=-1", "MSG114", "F.msg:1:8", "the value of 'X' is wrong: -1 is outside the range of uint8"),
+            ("int8 x\nint8 x", "MSG115", "F.msg:2:6", "the name 'x' is used twice"),
             ("int8[0] x", "MSG119", "F.msg:1:6", "'0' is not a length of an array"),
             ("int8[<=n] x", "MSG119", "F.msg:1:8", "'n' is not a length of a sequence"),
             ("string<=z x", "MSG119", "F.msg:1:9", "'z' is not a length of a string"),
             ("int8<=3 x", "MSG119", "F.msg:1:1", "'int8' is not a string and has no length to bound"),
-            ("int8 x\n---\n", "MSG118", "F.msg:2:1", "a .msg file has 1 part, this '---' begins another"),
+            ("int8 x\n---\n", "MSG118", "F.msg:2:1", "a .msg file has 1 part, but this '---' begins another"),
         ],
     )
     def test_each_says_what_and_where(self, text, code, place, message):
@@ -173,7 +178,7 @@ class TestFaults:
         ]
 
     def test_parts_of_services_and_actions(self):
-        assert faults("int8 x\n", "srv")[0][2] == "a .srv file has 2 parts with '---' between them, this one has 1"
+        assert faults("int8 x\n", "srv")[0][2] == "a .srv file has 2 parts with '---' between them, but this file has 1"
         assert faults("---\n---\n", "srv")[0][1] == "F.msg:2:1"
         assert faults("---\n", "action")[0][0] == "MSG118"
 
@@ -225,7 +230,7 @@ class TestWorkspace:
         interface_package.write("msg", "Old", "Header header\ntime stamp\nduration length\n")
         found = self.found(f"{interface_package.name}/msg/Old")
         assert [each.code for each in found] == ["MSG117"] * 3
-        assert found[0].hint == "in ROS 2 it is 'std_msgs/Header'"
+        assert found[0].hint == "use 'std_msgs/Header' in ROS 2"
 
     def test_a_package_may_have_a_header_of_its_own(self, interface_package):
         interface_package.write("msg", "Header", "int8 x\n")
@@ -349,16 +354,16 @@ class TestIdl:
     @pytest.mark.parametrize(
         ("text", "code", "message"),
         [
-            ("union U switch (long) {};", "MSG120", "'union' is not understood in the IDL of messages"),
-            ("enum E { A };", "MSG120", "'enum' is not understood"),
+            ("union U switch (long) {};", "MSG120", "'union' cannot be used in the IDL of messages"),
+            ("enum E { A };", "MSG120", "'enum' cannot be used"),
             ("module a { struct F { char c; }; };", "MSG120", "'char' is not supported in messages"),
             ("module a { struct F { long double c; }; };", "MSG120", "'long double' is not supported"),
             ("module a { struct F { sequence<sequence<long>> c; }; };", "MSG120", "sequences of sequences"),
             ("module a { struct F { long c[2][3]; }; };", "MSG120", "arrays of arrays"),
             ("module a { struct F { thing c; }; };", "MSG111", "there is no type 'thing'"),
             ("module a { struct F { string<0> c; }; };", "MSG119", "'0' is not a length"),
-            ("module a { struct F { long c }; };", "MSG120", "found '}' where ';' is expected"),
-            ("module a { struct F { long", "MSG120", "found the end of the file where a name is expected"),
+            ("module a { struct F { long c }; };", "MSG120", "';' is expected, but there is '}'"),
+            ("module a { struct F { long", "MSG120", "a name is expected, but there is the end of the file"),
             ("module a { const octet X = 300; };", "MSG114", "the value of 'X' is wrong"),
             ("module a { struct G { long x; }; };", "MSG118", "does not define the structure 'my_msgs::msg::F'"),
             ("module a ? {}", "MSG120", "'?' is not expected here"),

@@ -283,20 +283,20 @@ class TestParameters:
     @pytest.mark.parametrize(
         ("parameters", "messages"),
         [
-            ({"rate": 0}, ["parameter 'rate' must be a positive number, and it is 0"]),
-            ({"rate": "fast"}, ["parameter 'rate' must be a positive number, and it is 'fast'"]),
-            ({"delta": True}, ["parameter 'delta' must be a number, and it is True"]),
+            ({"rate": 0}, ["parameter 'rate' must be a positive number, but it is 0"]),
+            ({"rate": "fast"}, ["parameter 'rate' must be a positive number, but it is 'fast'"]),
+            ({"delta": True}, ["parameter 'delta' must be a number, but it is True"]),
             (
                 {"use_mimic_tags": "yes", "source_list": [1]},
                 [
-                    "parameter 'use_mimic_tags' must be true or false, and it is 'yes'",
-                    "parameter 'source_list' must be a list of topic names, and it is [1]",
+                    "parameter 'use_mimic_tags' must be true or false, but it is 'yes'",
+                    "parameter 'source_list' must be a list of topic names, but it is [1]",
                 ],
             ),
-            ({"zeros": {"a": "up"}}, ["parameter 'zeros.a' must be a number, and it is 'up'"]),
+            ({"zeros": {"a": "up"}}, ["parameter 'zeros.a' must be a number, but it is 'up'"]),
             (
                 {"dependent_joints": {"a": {"factor": 2.0}}},
-                ["parameter 'dependent_joints.a.parent' must be the name of a joint, and it is not given"],
+                ["parameter 'dependent_joints.a.parent' must be the name of a joint, but it is not given"],
             ),
             (
                 {"dependent_joints": {"a": {"parent": "b", "faktor": 2.0}}},
@@ -331,7 +331,7 @@ class TestParameters:
         assert not successful
         assert reason == "Found an infinite recursive mimic chain: ['c', 'b', 'c']"
         assert await stage.set(publisher, rate=-1) == [
-            (False, "parameter 'rate' must be a positive number, and it is -1")
+            (False, "parameter 'rate' must be a positive number, but it is -1")
         ]
 
 

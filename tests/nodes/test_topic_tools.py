@@ -247,9 +247,9 @@ async def test_an_expression_that_fails_is_told_and_the_next_message_counts(test
         (Delay, ["a", "-1"], "parameter 'delay' of 'delay' cannot be '-1.0'"),
         (Mux, ["out"], "parameter 'input_topics' of 'mux' is not given"),
         (Transform, ["a", "b", "std_msgs/Nothing"], "there is no message 'std_msgs/msg/Nothing'"),
-        (Transform, ["a", "b", "std_msgs/String", "m +"], "'m +' is not understood"),
+        (Transform, ["a", "b", "std_msgs/String", "m +"], "'m +' cannot be parsed"),
         (Transform, ["a", "b"], "the following arguments are required: output_type"),
-        (RelayField, ["a", "b", "std_msgs/String", "data"], "'data' is not understood: it is not a mapping of fields"),
+        (RelayField, ["a", "b", "std_msgs/String", "data"], "'data' cannot be parsed: it is not a mapping of fields"),
     ],
 )
 async def test_words_that_mean_nothing(test, kind, words, text):

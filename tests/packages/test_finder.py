@@ -331,7 +331,7 @@ def test_a_package_may_bring_substitutes_for_others(tmp_path: Path, monkeypatch:
         assert found.share("sea_ros") == module / "share" / "sea_ros"
         assert is_substitute(found.share("sea_ros"))
         assert not is_substitute(tmp_path / "share" / "sea_ros")
-        with pytest.warns(UserWarning, match="'my_sea' brings no substitute for 'lost_ros'"):
+        with pytest.warns(UserWarning, match="'my_sea' provides no substitute for 'lost_ros'"):
             assert "sea_ros" in found.packages()
     finally:
         extensions._all_groups.cache_clear()

@@ -204,8 +204,8 @@ class TestManners:
     @pytest.mark.parametrize(
         ("line", "hint"),
         [
-            ("from rclpy.qos import Node", "hint: it is in 'launch_ros.actions' or 'rclpy.node'"),
-            ("from rclpy.node import QoSPresetProfiles", "hint: it is in 'rclpy.qos'"),
+            ("from rclpy.qos import Node", "hint: import it from 'launch_ros.actions' or 'rclpy.node'"),
+            ("from rclpy.node import QoSPresetProfiles", "hint: import it from 'rclpy.qos'"),
             ("from tf2_ros import PoseArray", "ImportError: cannot import name 'PoseArray' from 'tf2_ros'"),
         ],
     )

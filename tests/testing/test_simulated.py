@@ -201,7 +201,7 @@ def test_robots_come_and_go_while_the_test_runs(tmp_path):
         test.advance(0.1)
         assert test.simulation.model_pose("second")[:3] == pytest.approx((3, 2, 0.5), abs=1e-3)
         assert odometry.messages
-        with pytest.raises(LinkwrightError, match="already a model"):
+        with pytest.raises(LinkwrightError, match="already exists"):
             test.spawn(tmp_path / "crate.sdf")
         test.delete("crate")
         assert [name for name in test.simulation.scene.models if name != "ground"] == ["second", "mbot"]

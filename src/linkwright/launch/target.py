@@ -59,7 +59,7 @@ class LaunchTarget:
             )
             listed = ", ".join(str(path.relative_to(share)) for path in found)
             raise LinkwrightError(
-                Diagnostic("LAUNCH101", message, hint=phrase("name one by its path: {listed}", listed=listed))
+                Diagnostic("LAUNCH101", message, hint=phrase("give the path of one of them: {listed}", listed=listed))
             )
         names = [path.name for path in present]
         message = phrase(
@@ -99,7 +99,7 @@ def parse_launch_words(words: Sequence[str]) -> tuple[LaunchTarget, dict[str, st
             files = [path.name for path in _files_of_package(named[0])]
             if files:
                 hint = phrase("it has {names}", names=joined(files))
-                raise _incomplete(phrase("'{named}' is a package: name a launch file in it too", named=named[0]), hint)
+                raise _incomplete(phrase("'{named}' is a package: also name a launch file in it", named=named[0]), hint)
         return LaunchTarget(named[0]), arguments
     return LaunchTarget(named[1], named[0]), arguments
 

@@ -88,7 +88,7 @@ class _Setter:
         except _Unfit as unfit:
             self._wrong(
                 phrase("'{path}' cannot be {value}", path=path, value=_shown(value)),
-                phrase("it is {unfit}", unfit=unfit),
+                phrase("it must be {unfit}", unfit=unfit),
             )
         except AssertionError as error:
             reason = str(error).partition(" must ")[2]
@@ -195,7 +195,7 @@ def _described(kind: FieldType) -> Phrase:
     words = {
         int: phrase("an integer"),
         float: phrase("a number"),
-        str: phrase("a text"),
+        str: phrase("a string"),
         bool: phrase("true or false"),
         bytes: phrase("a byte, 0 to 255"),
     }

@@ -263,7 +263,7 @@ def _reader_for(data: bytes, message_class: type[Any]) -> Any:
         if len(data) < 4:
             why = phrase("{count} bytes are too few for the header", count=len(data))
         elif data[:2] in _HEADERS:
-            why = phrase("its header says {headers}; ROS 2 sends plain CDR", headers=_HEADERS[data[:2]])
+            why = phrase("its header declares {headers}; ROS 2 sends plain CDR", headers=_HEADERS[data[:2]])
         else:
             why = phrase("it begins with {hex} instead of the header of CDR", hex=data[:4].hex(" "))
         raise data_error(
@@ -281,7 +281,7 @@ def _reader_for(data: bytes, message_class: type[Any]) -> Any:
 
 def _unreadable(message_class: type[Any], data: bytes, fault: Exception) -> MessageDataError:
     if isinstance(fault, UnicodeDecodeError):
-        why = phrase("a text in it is not UTF-8")
+        why = phrase("a string in it is not UTF-8")
     elif isinstance(fault, DataFaultError):
         why = foreign(fault)
     else:

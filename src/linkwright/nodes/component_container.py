@@ -136,7 +136,7 @@ def _unknown(package: str, plugin: str) -> LinkwrightError:
     here = [name for owner, name in COMPONENTS if owner == package]
     near = did_you_mean(plugin, here) or did_you_mean(plugin, [name for _, name in COMPONENTS])
     if near is None and here:
-        near = phrase("it has: {names}", names=joined(here))
+        near = phrase("the package has {names}", names=joined(here))
     hint = near or phrase(
         "without ROS only the nodes that come with Linkwright can be composed; others are compiled libraries"
     )

@@ -43,7 +43,7 @@ class DemoCamera(SingleNode):
                 raise LinkwrightError(
                     Diagnostic(
                         "NODE421",
-                        phrase("parameter '{name}' must be more than 0, and it is {value}", name=name, value=value),
+                        phrase("parameter '{name}' must be more than 0, but it is {value}", name=name, value=value),
                     )
                 )
         qos = QoSProfile(
@@ -92,7 +92,7 @@ def _policy(kind: type[HistoryPolicy | ReliabilityPolicy], name: str, value: str
             Diagnostic(
                 "NODE421",
                 phrase("parameter '{name}' is '{value}'", name=name, value=value),
-                hint=phrase("it is one of {known}", known=joined(known)),
+                hint=phrase("choose from {known}", known=joined(known)),
             )
         )
     return value.upper()

@@ -171,7 +171,7 @@ class _Reader:
         self.problems.append(
             Diagnostic(
                 "NODE201",
-                phrase("parameter '{name}' must be {expected}, and {given}", name=name, expected=expected, given=given),
+                phrase("parameter '{name}' must be {expected}, but {given}", name=name, expected=expected, given=given),
             )
         )
 

@@ -277,7 +277,7 @@ class JointStatePublisher(SingleNode):
                 raise LinkwrightError(
                     Diagnostic(
                         "NODE205",
-                        phrase("'{path}' is {other}, and this node reads URDF", path=path, other=other),
+                        phrase("'{path}' is {other}, but this node reads only URDF", path=path, other=other),
                         hint=phrase("the ROS node reads SDF and COLLADA too; convert the file to URDF"),
                     )
                 )

@@ -247,7 +247,7 @@ class NodeRegistry(Mapping[tuple[str, str], Factory]):
         except Exception as error:
             package, name = key
             message = phrase("the node '{package}/{name}' cannot be imported", package=package, name=name)
-            hint = phrase("'{place}' brings it: {problem}", place=entry.distribution, problem=foreign(error))
+            hint = phrase("'{place}' provides it: {problem}", place=entry.distribution, problem=foreign(error))
             raise LinkwrightError(Diagnostic("NODE002", message, hint=hint)) from error
         return factory
 

@@ -118,14 +118,16 @@ def _factory(package: str, executable: str) -> Factory:
         return factory
     packages = sorted({name for name, _ in EXECUTABLES})
     if package not in packages:
-        hint = did_you_mean(package, packages) or phrase("available: {names}", names=joined(packages))
+        hint = did_you_mean(package, packages) or phrase("choose from {names}", names=joined(packages))
         raise LinkwrightError(
             Diagnostic(
-                "NODE001", phrase("package '{package}' has no node that comes with us", package=package), hint=hint
+                "NODE001",
+                phrase("package '{package}' has no node that comes with Linkwright", package=package),
+                hint=hint,
             )
         )
     executables = sorted(name for owner, name in EXECUTABLES if owner == package)
-    hint = did_you_mean(executable, executables) or phrase("available: {names}", names=joined(executables))
+    hint = did_you_mean(executable, executables) or phrase("choose from {names}", names=joined(executables))
     raise LinkwrightError(
         Diagnostic(
             "NODE001",

@@ -321,7 +321,7 @@ class RobotStatePublisher(SingleNode):
             raise LinkwrightError(
                 Diagnostic(
                     "NODE103",
-                    phrase("{rule}, and it is {frequency:g}", rule=BAD_FREQUENCY, frequency=frequency),
+                    phrase("{rule}, but it is {frequency:g}", rule=BAD_FREQUENCY, frequency=frequency),
                 )
             )
         self._throttle = Throttle(_interval_ns(frequency))

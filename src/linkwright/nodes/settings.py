@@ -86,7 +86,7 @@ def bad_value(name: str, value: object, node: str, known: Sequence[str] = ()) ->
     message = phrase("parameter '{name}' of '{node}' cannot be '{value}'", name=name, node=node, value=value)
     hint = None
     if known:
-        hint = did_you_mean(str(value), known) or phrase("it is one of {known}", known=", ".join(known))
+        hint = did_you_mean(str(value), known) or phrase("choose from {known}", known=", ".join(known))
     return LinkwrightError(Diagnostic("NODE433", message, hint=hint))
 
 

@@ -120,5 +120,5 @@ def _rate(text: str) -> float:
         rate = 0.0
     if not 0.0 < rate < float("inf"):
         message = phrase("Failed to convert rate argument '{text}' to a floating-point number", text=text)
-        raise LinkwrightError(Diagnostic("NODE401", message, hint=phrase("give the echoes a second, such as 2.0")))
+        raise LinkwrightError(Diagnostic("NODE401", message, hint=phrase("give the rate in hertz, such as 2.0")))
     return rate

@@ -28,7 +28,7 @@ class ZenohRouter(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         if find_spec("zenoh") is None:
             raise LinkwrightError(
-                Diagnostic("NODE003", phrase("a router of Zenoh needs Zenoh"), hint=install_hint("zenoh"))
+                Diagnostic("NODE003", phrase("the Zenoh router needs the Zenoh library"), hint=install_hint("zenoh"))
             )
         from linkwright.wire.zenoh.opening import ObstacleReporter
         from linkwright.wire.zenoh.reaching import asked_for

@@ -43,7 +43,7 @@ class PackageNotFoundError(LinkwrightError, KeyError):
 
     def __init__(self, name: str, searched: Sequence[str], meant: Phrase | None, *, is_slip: bool) -> None:
         notes = tuple(Note(phrase("searched {place}", place=place)) for place in searched)
-        hint = meant or phrase("go to the workspace that holds it, or source its install/setup.bash")
+        hint = meant or phrase("change to the workspace that contains it, or source its install/setup.bash")
         super().__init__(Diagnostic("PKG101", phrase("package '{name}' not found", name=name), notes=notes, hint=hint))
         self.name = name
         self.is_slip = is_slip

@@ -57,7 +57,7 @@ def check_dependency(name: str) -> list[Diagnostic]:
     if _DEPENDENCY.fullmatch(name):
         return []
     message = phrase("'{name}' cannot be the name of a dependency", name=name)
-    return [Diagnostic("PKG204", message, hint=phrase("separate names with blanks: --dependencies urdf xacro"))]
+    return [Diagnostic("PKG204", message, hint=phrase("separate names with spaces: --dependencies urdf xacro"))]
 
 
 def check_email(address: str) -> list[Diagnostic]:
@@ -90,11 +90,11 @@ def _broken_rule(name: str) -> Phrase:
 
 def _departure(name: str) -> Phrase | None:
     if name != name.lower():
-        return phrase("names are lower case")
+        return phrase("use lower case")
     if "__" in name:
-        return phrase("names have no consecutive underscores")
+        return phrase("do not use consecutive underscores")
     if len(name) < 2:
-        return phrase("names have at least two characters")
+        return phrase("use at least two characters")
     return None
 
 

@@ -58,7 +58,7 @@ def _share_with_files(name: str) -> Path | None:
     try:
         prefix = Path(entry.load().__file__).parent
     except Exception as error:  # noqa: BLE001 - a broken package must not stop the search
-        warnings.warn(f"'{entry.distribution}' brings no substitute for '{name}': {error}", stacklevel=2)
+        warnings.warn(f"'{entry.distribution}' provides no substitute for '{name}': {error}", stacklevel=2)
         return None
     return share_in_prefix(prefix, name)
 

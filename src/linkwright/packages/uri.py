@@ -20,7 +20,7 @@ def resolve(address: str, share: Callable[[str], Path], relative_to: Path | None
         LinkwrightError: an error of `share`, or PKG102 for a URI that has none of the three forms.
     """
     if not address.strip():
-        raise _bad_uri(phrase("'{uri}' is empty where the path of a file is expected", uri=address))
+        raise _bad_uri(phrase("'{uri}' is empty, but the path of a file is expected", uri=address))
     scheme = _SCHEME.match(address)
     if scheme is None:
         path = Path(address)
@@ -43,7 +43,10 @@ def resolve(address: str, share: Callable[[str], Path], relative_to: Path | None
 
 def _package_path(address: str, rest: str, share: Callable[[str], Path]) -> Path:
     if not rest.startswith("//"):
-        raise _bad_uri(phrase("'{uri}' lacks the two slashes", uri=address), phrase("write package://PACKAGE/PATH"))
+        raise _bad_uri(
+            phrase("'{uri}' lacks the two slashes after the scheme", uri=address),
+            phrase("write package://PACKAGE/PATH"),
+        )
     name, _, path = rest[2:].partition("/")
     if not name:
         raise _bad_uri(phrase("'{uri}' names no package", uri=address), phrase("write package://PACKAGE/PATH"))

@@ -47,4 +47,4 @@ def _hint(word: str) -> Phrase:
     found = re.match(_SINGLE_SIGN, word, re.DOTALL)
     if found:
         return phrase("write {name}:={value}", name=found[1], value=found[3])
-    return phrase("arguments are written name:=value")
+    return phrase("write arguments as name:=value")

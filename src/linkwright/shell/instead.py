@@ -12,26 +12,28 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_
 _PAGE = phrase(
     "the page has panels for that: run `linkwright launch` or `linkwright view`, then open Panels in its title bar"
 )
-_COLCON = phrase("that was ROS 1; build with `colcon build`")
-_ROS2 = phrase("that was ROS 1; the commands of ROS 2 begin with `ros2`, as in `ros2 launch` and `ros2 topic list`")
+_COLCON = phrase("this is a ROS 1 command; build with `colcon build`")
+_ROS2 = phrase(
+    "this is a ROS 1 command; the commands of ROS 2 begin with `ros2`, as in `ros2 launch` and `ros2 topic list`"
+)
 _SIMULATION = phrase(
-    "launch files that start it run with Linkwright's simulation here: `ros2 launch gazebo_ros "
-    "gazebo.launch.py world:=FILE`"
+    "run a launch file that starts it, which uses Linkwright's simulation: `ros2 launch "
+    "gazebo_ros gazebo.launch.py world:=FILE`"
 )
 
 INSTEAD: dict[str, Phrase] = {
     "rosdep": phrase(
-        "packages need no system packages here: put the sources of a missing package into the workspace's src "
-        "folder, and install Python modules with pip"
+        "Linkwright needs no system packages: put the sources of a missing package into the "
+        "workspace's src folder, and install Python modules with pip"
     ),
     "rqt": _PAGE,
     "rqt_console": _PAGE,
-    "rqt_graph": phrase("the page's panel Node graph shows it; in the terminal, `ros2 node info NODE`"),
+    "rqt_graph": phrase("open the page's panel Node graph; in the terminal, run `ros2 node info NODE`"),
     "rqt_plot": _PAGE,
     "rqt_reconfigure": phrase(
-        "the page's panel Parameters does that; in the terminal, `ros2 param set NODE NAME VALUE`"
+        "open the page's panel Parameters; in the terminal, run `ros2 param set NODE NAME VALUE`"
     ),
-    "rviz": phrase("it is called rviz2: `rviz2 -d FILE.rviz`, or `linkwright view FILE` for one robot"),
+    "rviz": phrase("run `rviz2 -d FILE.rviz`, or `linkwright view FILE` for one robot"),
     "plotjuggler": _PAGE,
     "gazebo": _SIMULATION,
     "gzserver": _SIMULATION,
@@ -40,7 +42,7 @@ INSTEAD: dict[str, Phrase] = {
     "ign": _SIMULATION,
     "catkin": _COLCON,
     "catkin_make": _COLCON,
-    "roscore": phrase("that was ROS 1; nodes of ROS 2 find each other without it"),
+    "roscore": phrase("this is a ROS 1 command; nodes of ROS 2 find each other without it"),
     "roslaunch": _ROS2,
     "rosrun": _ROS2,
     "rostopic": _ROS2,

@@ -74,7 +74,7 @@ async def test_what_does_not_begin_here_is_refused(managed):
     with pytest.raises(RclError, match="No transition matching activate found for current state") as e:
         managed.trigger_activate()
     assert "Transition is not registered" in str(e.value)
-    assert e.value.diagnostics[0].hint == "from here: configure, shutdown"
+    assert e.value.diagnostics[0].hint == "the transitions from this state are configure, shutdown"
     assert isinstance(e.value, RuntimeError)
 
 

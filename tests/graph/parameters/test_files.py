@@ -123,10 +123,10 @@ def test_patterns_count_in_the_order_in_which_they_came_up():
 @pytest.mark.parametrize(
     ("value", "message"),
     [
-        ("[[1], [2]]", "the list of parameter 'a.b' has a list in it"),
-        ("[{c: 1}, 2]", "the list of parameter 'a.b' has a mapping in it"),
-        ("[1, {c: [{d: 1}, [2]]}, 3]", "the list of parameter 'a.b' has a mapping in it"),
-        ("[1, [], 3]", "the list of parameter 'a.b' has a list in it"),
+        ("[[1], [2]]", "the list of parameter 'a.b' contains a list"),
+        ("[{c: 1}, 2]", "the list of parameter 'a.b' contains a mapping"),
+        ("[1, {c: [{d: 1}, [2]]}, 3]", "the list of parameter 'a.b' contains a mapping"),
+        ("[1, [], 3]", "the list of parameter 'a.b' contains a list"),
     ],
 )
 def test_a_parameter_whose_list_has_more_than_values_is_left_out_and_the_rest_is_read(value, message):
@@ -150,22 +150,22 @@ def test_files_may_say_nothing(text):
         (
             "node:\n  ros__parameters:\n    a: [1, 2.5]",
             "3:12",
-            "the list of parameter 'a' begins with a value of type integer and has one of type double",
+            "the list of parameter 'a' begins with a value of type integer but contains one of type double",
             "write 1.0 as the first value, or integers only",
         ),
         (
             "node:\n  ros__parameters:\n    a: [1.5, 2]",
             "3:14",
-            "the list of parameter 'a' begins with a value of type double and has one of type integer",
+            "the list of parameter 'a' begins with a value of type double but contains one of type integer",
             "write 2.0",
         ),
         (
             "node:\n  ros__parameters:\n    a: [x, 2]",
             "3:12",
-            "the list of parameter 'a' begins with a value of type string and has one of type integer",
+            "the list of parameter 'a' begins with a value of type string but contains one of type integer",
             'write "2"',
         ),
-        ("node:\n  ros__parameters:\n    a:", "3:7", "parameter 'a' has no value", 'an empty text is ""'),
+        ("node:\n  ros__parameters:\n    a:", "3:7", "parameter 'a' has no value", 'write "" for an empty string'),
         (
             "node:\n  ros_parameters:\n    a: 1",
             "3:8",
@@ -181,7 +181,7 @@ def test_files_may_say_nothing(text):
         (
             "ros__parameters:\n  a: 1",
             "1:1",
-            "there are no node names before 'ros__parameters'",
+            "there is no node name above 'ros__parameters'",
             "it maps node names to 'ros__parameters', which maps names to values",
         ),
         (
@@ -194,13 +194,13 @@ def test_files_may_say_nothing(text):
             "my-node:\n  ros__parameters:\n    a: 1",
             "1:1",
             "'my-node' is not a node name",
-            "names have letters, digits and '_', and do not begin with a digit; * and ** match any",
+            "use letters, digits and '_', and do not begin with a digit; * and ** match any name",
         ),
         (
             "node:\n  ros__parameters:\n    a: &x 1\n    b: *x",
             "4:8",
             "aliases are not supported in parameter files",
-            "write the value out",
+            "write the value instead of the alias",
         ),
         ("node:\n  ros__parameters: 3", "2:20", "'ros__parameters' must be a mapping of names to values", None),
     ],
@@ -216,7 +216,7 @@ def test_what_is_wrong_is_told_with_its_place(text, place, message, hint):
 def test_tabs_and_other_faults_of_yaml():
     with pytest.raises(LinkwrightError, match=r"params.yaml:2:1: parameter file is not YAML: ") as caught:
         read("node:\n\tros__parameters:\n\t\ta: 1")
-    assert caught.value.diagnostics[0].hint == "indent with blanks, not with tabs"
+    assert caught.value.diagnostics[0].hint == "indent with spaces, not tabs"
     with pytest.raises(LinkwrightError, match="parameter file is not YAML"):
         read("node: {ros__parameters: {a: [1, ")
 

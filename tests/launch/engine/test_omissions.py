@@ -37,7 +37,7 @@ async def test_all_that_is_missing_is_left_out_and_listed_once(launch, write: Wr
     )
     assert done.messages == ["the rest runs"]
     assert done.succeeded
-    assert done.err.count("warning[LAUNCH146]: 7 parts of the launch are skipped, the rest runs") == 1
+    assert done.err.count("warning[LAUNCH146]: 7 parts of the launch are skipped, and the rest runs") == 1
     assert "error" not in done.err
     for named in ("no_such_package", "no_such_program", "no_such_share", "no-such-executable", "no_such_module"):
         assert named in done.err
@@ -71,7 +71,7 @@ async def test_other_mistakes_end_the_launch_all_the_same(launch) -> None:
 async def test_the_error_offers_the_command(launch) -> None:
     options = {"command_to_skip_missing": "linkwright launch --skip-missing a.launch.py"}
     done = await launch(Node(package="robot_state_publishr", executable="driver"), session_options=options)
-    assert "to skip it and run the rest: linkwright launch --skip-missing a.launch.py" in done.err
+    assert "run linkwright launch --skip-missing a.launch.py to skip it and run the rest" in done.err
     assert not done.succeeded
     done = await launch(LogInfo(msg=LaunchConfiguration("typo")), session_options=options)
     assert "--skip-missing" not in done.err
@@ -88,7 +88,7 @@ class TestWithoutTheOption:
             ExecuteProcess(cmd=[sys.executable, "-c", "print('the rest runs')"], output="screen"),
         )
         assert "the rest runs" in done.out
-        assert "3 parts of the launch are skipped, the rest runs" in done.err
+        assert "3 parts of the launch are skipped, and the rest runs" in done.err
         assert "test_omissions.py" in done.err
         assert "error" not in done.err
         assert done.succeeded
@@ -108,7 +108,7 @@ class TestWithoutTheOption:
             ExecuteProcess(cmd=[sys.executable, "-c", "print('the rest runs')"], output="screen"),
         )
         assert "the rest runs" in done.out
-        assert "4 parts of the launch are skipped, the rest runs" in done.err
+        assert "4 parts of the launch are skipped, and the rest runs" in done.err
         assert done.succeeded
 
     async def test_a_compiled_node_that_was_not_built(self, launch, tmp_path: Path) -> None:
@@ -133,7 +133,7 @@ class TestWithoutTheOption:
             ),
             ends_when(printed("skipped")),
         )
-        assert "one part of the launch is skipped, the rest runs" in done.err
+        assert "one part of the launch is skipped, and the rest runs" in done.err
         assert "'zzz::Driver'" in done.err
         assert done.succeeded
 

@@ -117,7 +117,7 @@ def test_the_same_anonymous_name_each_time() -> None:
     ("written", "message", "hint"),
     [
         ("$(var x", "has no closing parenthesis", "end it with ')'"),
-        ("$( var x)", "no name after '$('", None),
+        ("$( var x)", "there is no name after '$('", None),
         ("$(said 'a)", "the quote ' is not closed", None),
         ("$(said a(b))", "'('", "put quotes around it"),
         ("$(said a'b')", "a quote inside the argument", "quote the whole argument"),

@@ -203,7 +203,7 @@ CASES = [
     ("launch:\n- arg: {name: a}\n  let: {name: b}\n", "LAUNCH118", (2, 3), "a mapping with one key", None),
     ("launch:\n- arg: 3\n", "LAUNCH118", (2, 3), "'arg' needs attributes", None),
     ("launch: 3\n", "LAUNCH118", (1, 1), "needs attributes", None),
-    ("a: 1\nb: 2\n", "LAUNCH109", (1, 1), "one key 'launch'", None),
+    ("a: 1\nb: 2\n", "LAUNCH109", (1, 1), "single key 'launch'", None),
 ]
 
 

@@ -105,11 +105,11 @@ def test_an_exception_points_at_the_innermost_line_of_the_user(write: Write) -> 
             "cannot import name 'DeclareLaunchArgumet' from 'launch.actions'",
             "did you mean 'DeclareLaunchArgument'",
         ),
-        ("from launch.action import DeclareLaunchArgument", "cannot import name", "it is in 'launch.actions'"),
+        ("from launch.action import DeclareLaunchArgument", "cannot import name", "import it from 'launch.actions'"),
         (
             "from launch.actions import Node",
             "cannot import name 'Node'",
-            "it is in 'launch_ros.actions' or 'rclpy.node'",
+            "import it from 'launch_ros.actions' or 'rclpy.node'",
         ),
         ("import launch.substitution.x", "No module named 'launch.substitution.x'", None),
         ("import launch.substitutons", "No module named 'launch.substitutons'", "'substitutions'"),

@@ -54,7 +54,7 @@ def test_an_installed_program_is_not_replaced(installed: None, tmp_path: Path) -
 
 
 def test_a_parser_that_cannot_be_imported_is_named_with_its_package(installed: None) -> None:
-    with pytest.raises(LinkwrightError, match="the node in place of 'sunk' cannot be imported") as caught:
+    with pytest.raises(LinkwrightError, match="the node that replaces 'sunk' cannot be imported") as caught:
         replacing_node(["sunk"], NOWHERE)
     assert caught.value.diagnostics[0].code == "NODE002"
-    assert "'my_sea' brings it" in str(caught.value.diagnostics[0].hint)
+    assert "'my_sea' provides it" in str(caught.value.diagnostics[0].hint)

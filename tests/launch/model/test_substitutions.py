@@ -271,7 +271,7 @@ class TestCommand:
             ("no-such-program x", "cannot be run: No such file or directory: 'no-such-program'"),
             ("echo 'open", "cannot be split"),
             ("  ", "is empty"),
-            ("xacro", "xacro has no model file"),
+            ("xacro", "the xacro command names no model file"),
             ("xacro --deps a.xacro", "option '--deps' of xacro"),
             ("xacro a.xacro b.xacro", "expects exactly one model file, but was given 2"),
         ],

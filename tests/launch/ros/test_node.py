@@ -201,7 +201,7 @@ class TestProcessNodes:
         ("package", "executable", "message", "hint"),
         [
             ("arm", "tel", "package 'arm' has no executable 'tel'", "did you mean 'tell'?"),
-            ("arm", "xyzzy", "package 'arm' has no executable 'xyzzy'", "it has: tell"),
+            ("arm", "xyzzy", "package 'arm' has no executable 'xyzzy'", "the package has tell"),
             ("amr", "tell", "package 'amr' of node executable 'tell' not found", "did you mean 'arm'?"),
             ("robot_state_publishr", "x", "package 'robot_state_publishr'", "did you mean 'robot_state_publisher'"),
             ("rviz2", "rviz", "package 'rviz2' has no executable 'rviz'", "did you mean 'rviz2'?"),

@@ -125,9 +125,9 @@ class TestParameters:
         [
             ([{"p": object()}], "is of type object, which is not a parameter type"),
             ([{"p": Path("/x")}], "is a Path"),
-            ([{"p": [1, 2, [3, 4]]}], "has an item of type list"),
+            ([{"p": [1, 2, [3, 4]]}], "contains an item of type list"),
             ([{"g": {"h": {5: "x"}}}], "the name of a parameter must be a string, not 5"),
-            ([5.0], "has an item of type float"),
+            ([5.0], "contains an item of type float"),
             ({"a": 5}, "'parameters' of a node must be a list"),
             ("/path.yaml", "'parameters' of a node must be a list"),
         ],

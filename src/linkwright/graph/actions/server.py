@@ -296,7 +296,7 @@ class ActionServer(ActionEndpoint):
             goal.abort()
         elif result is None and not goal.result.ended():
             self._handle.logger.warning(
-                f"the execute callback of action '{self._action_name}' gave no result: an empty one is sent"
+                f"the execute callback of action '{self._action_name}' returned no result: an empty one is sent"
             )
         if result is not None and not isinstance(result, kind):
             self._handle.logger.error(

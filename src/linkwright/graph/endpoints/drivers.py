@@ -134,8 +134,8 @@ class DriverWatch:
         if len(drivers) > 1:
             topics = sorted({publisher.name for publisher in publishers})
             warning = phrase(
-                "two drivers at once: {drivers} send commands on {topics}, and each message takes effect in "
-                "turn: the robot jerks between them. End one of them, remap its topic (-r {topic}:=...), or "
+                "two nodes drive the robot: {drivers} send commands on {topics}, and the robot jerks because "
+                "it follows each message in turn. Stop one of them, remap its topic (-r {topic}:=...), or "
                 "let twist_mux choose by priority",
                 drivers=quoted_names(drivers),
                 topics=quoted_names(topics),

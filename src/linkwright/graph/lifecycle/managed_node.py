@@ -46,7 +46,7 @@ class LifecycleTransitionError(LinkwrightError, RclError):
     def __init__(self, requested: object, state: LifecycleState, available: Iterable[str]) -> None:
         names = list(dict.fromkeys(available))
         hint = did_you_mean(str(requested), names) or (
-            phrase("from here: {names}", names=joined(names)) if names else None
+            phrase("the transitions from this state are {names}", names=joined(names)) if names else None
         )
         text = phrase(
             "Transition is not registered: No transition matching {asked} found for current state {label}",

@@ -119,7 +119,8 @@ class _Reader:
             return ""
         if self._is("MappingStart"):
             raise self._error(
-                phrase("the value of parameter '{name}' is a mapping", name=name), phrase("give its entries one by one")
+                phrase("the value of parameter '{name}' is a mapping", name=name),
+                phrase("set each entry as a parameter of its own, such as gains.p"),
             )
         if self._is("SequenceStart"):
             return self._read_list(name)
@@ -138,7 +139,9 @@ class _Reader:
     def _advance(self) -> None:
         self._event = next(self._events)
         if type(self._event).__name__ == "AliasEvent":
-            raise self._error(phrase("aliases are not supported in parameter files"), phrase("write the value out"))
+            raise self._error(
+                phrase("aliases are not supported in parameter files"), phrase("write the value instead of the alias")
+            )
 
     def _is(self, kind: str) -> bool:
         return type(self._event).__name__ == f"{kind}Event"
@@ -154,7 +157,7 @@ class _Reader:
             if key == PARAMETERS_KEY:
                 if not above:
                     raise self._error(
-                        phrase("there are no node names before '{parameters_key}'", parameters_key=PARAMETERS_KEY),
+                        phrase("there is no node name above '{parameters_key}'", parameters_key=PARAMETERS_KEY),
                         _FORM,
                     )
                 pattern = "/" + "/".join(above)
@@ -226,7 +229,9 @@ class _Reader:
         event = self._event
         plain = event.style not in ("'", '"') and event.tag != "tag:yaml.org,2002:str"
         if plain and not event.value:
-            raise self._error(phrase("parameter '{name}' has no value", name=name), phrase('an empty text is ""'))
+            raise self._error(
+                phrase("parameter '{name}' has no value", name=name), phrase('write "" for an empty string')
+            )
         return scalar_value(event.value, plain=plain)
 
     def _read_list(self, name: str) -> list[Any]:
@@ -235,19 +240,19 @@ class _Reader:
         while not self._is("SequenceEnd"):
             if not self._is("Scalar"):
                 message = (
-                    phrase("the list of parameter '{name}' has a list in it", name=name)
+                    phrase("the list of parameter '{name}' contains a list", name=name)
                     if self._is("SequenceStart")
-                    else phrase("the list of parameter '{name}' has a mapping in it", name=name)
+                    else phrase("the list of parameter '{name}' contains a mapping", name=name)
                 )
-                error = self._error(message, phrase("lists hold plain values only"))
+                error = self._error(message, phrase("write only plain values in a list"))
                 raise _NestedListError(*error.diagnostics)
             value = self._read_scalar(name)
             if values and type(value) is not type(values[0]):
                 first, other = _KINDS[type(values[0])], _KINDS[type(value)]
                 raise self._error(
                     phrase(
-                        "the list of parameter '{name}' begins with a value of type {first} and has one of type"
-                        " {other}",
+                        "the list of parameter '{name}' begins with a value of type {first} but contains one of type "
+                        "{other}",
                         name=name,
                         first=first,
                         other=other,
@@ -263,10 +268,10 @@ class _Reader:
             if part not in ("*", "**") and not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", part):
                 raise self._error(
                     phrase("'{key}' is not a node name", key=key),
-                    phrase("names have letters, digits and '_', and do not begin with a digit; * and ** match any"),
+                    phrase("use letters, digits and '_', and do not begin with a digit; * and ** match any name"),
                 )
         if not parts:
-            raise self._error(phrase("'{key}' is not a node name", key=key), phrase("any node is /**"))
+            raise self._error(phrase("'{key}' is not a node name", key=key), phrase("write /** for all nodes"))
 
     def _error(self, message: Phrase, hint: Phrase | None = None) -> LinkwrightError:
         mark = self._event.start_mark
@@ -286,7 +291,7 @@ class _Reader:
             )
         hint = None
         if "\t" in self._source.line(mark.line + 1)[: mark.column + 1] or "'\\t'" in problem:
-            hint = phrase("indent with blanks, not with tabs")
+            hint = phrase("indent with spaces, not tabs")
         return self._error_at(
             mark.line, mark.column, phrase("parameter file is not YAML: {problem}", problem=foreign(problem)), hint
         )

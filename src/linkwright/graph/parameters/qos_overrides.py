@@ -140,5 +140,5 @@ def _from_parameter(kind: QoSPolicyKind, value: Any, name: str) -> Any:
                 value=value,
                 other_name=name,
             ),
-            did_you_mean(str(value).lower(), known) or phrase("available: {names}", names=joined(known)),
+            did_you_mean(str(value).lower(), known) or phrase("choose from {names}", names=joined(known)),
         ) from None

@@ -53,8 +53,8 @@ class Omissions:
         if not self._unreported:
             return
         message = counted(
-            "one part of the launch is skipped, the rest runs",
-            "{count} parts of the launch are skipped, the rest runs",
+            "one part of the launch is skipped, and the rest runs",
+            "{count} parts of the launch are skipped, and the rest runs",
             len(self._unreported),
         )
         self._log.diagnostics(
@@ -70,7 +70,7 @@ class Omissions:
         *others, last = error.diagnostics
         if self._command is None or not _is_missing(error):
             return error.diagnostics
-        note = Note(phrase("to skip it and run the rest: {command}", command=foreign(self._command)))
+        note = Note(phrase("run {command} to skip it and run the rest", command=foreign(self._command)))
         return (*others, last.with_changes(notes=(*last.notes, note)))
 
 

@@ -239,8 +239,8 @@ class RunningProcess:
                 hint = phrase("give program and arguments as separate items of cmd, or set shell=True")
             elif program in _TERMINALS:
                 hint = phrase(
-                    "install '{program}', which opens a window for the process, or run the process in a terminal of "
-                    "its own with 'linkwright run'",
+                    "install '{program}', which opens a window for the process, or run the process in its own "
+                    "terminal with 'linkwright run'",
                     program=program,
                 )
         else:

@@ -96,7 +96,7 @@ class _Reader:
                 start = self._at
             elif argument and not until and character in "'\"":
                 before = repr(self._text[start : self._at])
-                message = phrase("a quote inside the argument {before}", before=before)
+                message = phrase("there is a quote inside the argument {before}", before=before)
                 self._fail(message, phrase("quote the whole argument"))
             else:
                 self._at += 2 if character == "\\" and self._at + 1 < len(self._text) else 1
@@ -113,7 +113,7 @@ class _Reader:
         self._at += 2
         name = _NAME.match(self._text, self._at)
         if name is None:
-            self._fail(phrase("no name after '$('"), phrase("write \\$( for the literal characters"))
+            self._fail(phrase("there is no name after '$('"), phrase("write \\$( for the literal characters"))
         self._at = name.end()
         arguments = []
         while True:
@@ -137,7 +137,8 @@ class _Reader:
             parts = self._parts(until=quote, argument=True)
             if self._at == start:
                 self._fail(
-                    phrase("an opening parenthesis in an argument"), phrase(r"put quotes around it, or write \(")
+                    phrase("there is an opening parenthesis in an argument"),
+                    phrase(r"put quotes around it, or write \("),
                 )
             return parts
         start = self._at
@@ -164,7 +165,7 @@ class _Reader:
         if character == "(":
             hint = hint or phrase(r"put quotes around it, or write \(")
         self._fail(
-            phrase("{character} after '{text}'", character=repr(character), text=self._text[: self._at][-20:]),
+            phrase("there is {character} after '{text}'", character=repr(character), text=self._text[: self._at][-20:]),
             hint or phrase("separate arguments by spaces"),
         )
 

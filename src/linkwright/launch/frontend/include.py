@@ -183,7 +183,7 @@ class IncludeLaunchDescription(Action):
             unknown = [name for name in given if name not in names]
             near = nearest(argument.name, unknown)
             hint = (
-                phrase("it is given {near}; did you mean that?", near=quoted_names(near, " or "))
+                phrase("{near} is given; did you mean that?", near=quoted_names(near, " or "))
                 if near
                 else self._argument_hint(argument.name)
             )

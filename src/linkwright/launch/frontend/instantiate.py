@@ -88,6 +88,6 @@ def instantiate_substitution(
             message = (
                 phrase("substitution '{type_name}': {error}", type_name=type_name, error=foreign(error))
                 if str(error)
-                else phrase("substitution '{type_name}' is wrong", type_name=type_name)
+                else phrase("substitution '{type_name}' is not valid", type_name=type_name)
             )
             raise error_at(place, "LAUNCH119", message, ros_error=error) from error

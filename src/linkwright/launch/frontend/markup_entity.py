@@ -59,7 +59,7 @@ class MarkupEntity(Entity):
         known = [part for part in self._asked if part not in unknown]
         hint = did_you_mean(name, known)
         if hint is None and known:
-            hint = phrase("'{type_name}' takes {names}", type_name=self._type_name, names=quoted_names(sorted(known)))
+            hint = phrase("'{type_name}' accepts {names}", type_name=self._type_name, names=quoted_names(sorted(known)))
         raise error_at(
             self._place_of_part(name),
             "LAUNCH116",

@@ -55,7 +55,8 @@ class Entity(MarkupEntity):
                     f"That can be a list of subentities or a dictionary with a `children` list element"
                 )
                 message = phrase(
-                    "'{type_name}' needs actions: a list, or a key 'children' with one", type_name=self.type_name
+                    "'{type_name}' needs actions: write a list, or a key 'children' with a list",
+                    type_name=self.type_name,
                 )
                 raise error_at(self.place, "LAUNCH117", message, ros_error=ValueError(text))
             listed = listed[_CHILDREN]
@@ -154,7 +155,7 @@ class Parser(AnyParser):
         tree = load(text, name)
         if not isinstance(tree, dict) or len(tree) != 1:
             source = SourceText(name, text)
-            message = phrase("a YAML launch file is a mapping with the one key 'launch'")
+            message = phrase("a YAML launch file must be a mapping with the single key 'launch'")
             place = getattr(tree, "place", None) or MarkupPlace(source, 0, 0)
             raise error_at(place, "LAUNCH109", message, ros_error=RuntimeError("Expected only one root"))
         [(root, element)] = tree.items()

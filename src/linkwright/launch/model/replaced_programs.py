@@ -47,7 +47,7 @@ def replacing_node(words: Sequence[str], environment: Mapping[str, str]) -> Node
     try:
         parse: CommandParser = entry.load()
     except Exception as error:
-        message = phrase("the node in place of '{program}' cannot be imported", program=entry.name)
-        hint = phrase("'{place}' brings it: {problem}", place=entry.distribution, problem=foreign(error))
+        message = phrase("the node that replaces '{program}' cannot be imported", program=entry.name)
+        hint = phrase("'{place}' provides it: {problem}", place=entry.distribution, problem=foreign(error))
         raise LinkwrightError(Diagnostic("NODE002", message, hint=hint)) from error
     return parse(words)

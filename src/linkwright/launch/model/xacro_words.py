@@ -62,7 +62,7 @@ def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[Xa
             files=files[0],
         )
     if not files:
-        raise _misuse(phrase("xacro has no model file"), phrase("write Command(['xacro ', path])"))
+        raise _misuse(phrase("the xacro command names no model file"), phrase("write Command(['xacro ', path])"))
     return XacroCall(folder / files[0], tuple(arguments.items())), remark
 
 

@@ -111,7 +111,8 @@ def _rendered(text: str, path: Path, mappings: Mapping[str, Any]) -> str:
         import jinja2
     except ImportError as error:
         message = phrase(
-            "parameter file '{path}' is a template, and there is no jinja2 to fill it in", path=display_path(path)
+            "parameter file '{path}' is a template, and jinja2, which fills it in, is not installed",
+            path=display_path(path),
         )
         raise error_at(Place.of_caller(), "LAUNCH153", message, package_hint("jinja2")) from error
     try:

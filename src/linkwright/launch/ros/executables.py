@@ -255,7 +255,7 @@ def _no_executable(finder: PackageFinder, package: str, name: str, present: dict
             ),
         )
     if hint is None:
-        hint = phrase("it has: {present}", present=joined(present)) if present else _NO_EXECUTABLES
+        hint = phrase("the package has {present}", present=joined(present)) if present else _NO_EXECUTABLES
     error = _lookup_error(message, notes, hint)
     return mark_unavailable(error) if is_ours and not is_misspelt(name, present) else error
 
@@ -278,10 +278,10 @@ def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:
         return mark_unavailable(_lookup_error(message, (), advice))
     if not programs.is_complete and not is_misspelt(name, programs.names()):
         return mark_unavailable(_not_known_from_sources(package, name, share))
-    notes = (Note(phrase("read the entry points and installed programs of {share}", share=display_path(share))),)
+    notes = (Note(phrase("searched the entry points and installed programs of {share}", share=display_path(share))),)
     hint = did_you_mean(name, programs.names())
     if hint is None and programs.names():
-        hint = phrase("it has: {names}", names=joined(programs.names()))
+        hint = phrase("the package has {names}", names=joined(programs.names()))
     if hint is None:
         hint = phrase("name it in entry_points of setup.py, or in install(PROGRAMS ...) of CMakeLists.txt")
     return _lookup_error(

@@ -69,7 +69,7 @@ class ChangeState(Event):
                 Place.of_caller(),
                 "LAUNCH138",
                 message,
-                phrase("available: {listed}", listed=listed),
+                phrase("the available transitions are {listed}", listed=listed),
                 ros_error=ros_error,
             )
         self.lifecycle_node_matcher = lifecycle_node_matcher

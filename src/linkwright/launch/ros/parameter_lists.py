@@ -113,8 +113,8 @@ def _normalized_item(item: Any, place: Place | None) -> Any:
         return item
     if isinstance(item, (str, Path, Substitution, list, tuple)):
         return ParameterFile(item)
-    message = phrase("'parameters' of a node has an item of type {name}", name=type(item).__name__)
-    hint = phrase("items are dictionaries and paths of YAML files")
+    message = phrase("'parameters' of a node contains an item of type {name}", name=type(item).__name__)
+    hint = phrase("items must be dictionaries or paths of YAML files")
     raise error_at(place, "LAUNCH132", message, hint, ros_error=TypeError(message))
 
 
@@ -179,9 +179,9 @@ def _item_kind(item: Any, key: Any) -> type:
         return tuple
     shown = key if isinstance(key, str) else "..."
     message = phrase(
-        "the list of parameter '{shown}' has an item of type {name}", shown=shown, name=type(item).__name__
+        "the list of parameter '{shown}' contains an item of type {name}", shown=shown, name=type(item).__name__
     )
-    hint = phrase("items are of one of the types bool, int, float and str")
+    hint = phrase("items must be of type bool, int, float or str")
     raise error_at(Place.of_caller(), "LAUNCH132", message, hint, ros_error=TypeError(message))
 
 

@@ -228,7 +228,11 @@ class SetROSLogDir(Action):
         if not folder.is_absolute():
             message = phrase("the log folder '{folder}' is not an absolute path", folder=folder)
             raise error_at(
-                self.place, "LAUNCH136", message, phrase("make ROS_LOG_DIR absolute"), ros_error=AssertionError(message)
+                self.place,
+                "LAUNCH136",
+                message,
+                phrase("set ROS_LOG_DIR to an absolute path"),
+                ros_error=AssertionError(message),
             )
         context.environment["ROS_LOG_DIR"] = os.fspath(folder)
 

@@ -156,7 +156,7 @@ def read_wide_text(data: bytes, at: int, count: int, order: str) -> tuple[str, i
     most = max(units, default=0)
     if most > _LAST_UNIT:
         raise DataFaultError(
-            phrase("a wide text in it has a unit of {value}; units of UTF-16 are 65535 at most", value=most)
+            phrase("a wide string contains a unit of {value}; units of UTF-16 are at most 65535", value=most)
         )
     return str(array("H", units).tobytes(), "utf-16-le"), end
 
@@ -174,12 +174,12 @@ def truncated() -> None:
 
 def unterminated() -> None:
     """The error for a text without NUL at its end."""
-    raise DataFaultError(phrase("the end of a text in it does not match its length"))
+    raise DataFaultError(phrase("the end of a string does not match its length"))
 
 
 def bad_bool(value: int) -> None:
     """The error for a bool that is neither 0 nor 1."""
-    raise DataFaultError(phrase("a bool in it is {value}", value=value))
+    raise DataFaultError(phrase("a bool has the value {value}", value=value))
 
 
 def too_long(name: str, bound: int) -> None:

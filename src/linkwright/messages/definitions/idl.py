@@ -135,7 +135,7 @@ class _Reader:
             else:
                 self._fail(
                     "MSG120",
-                    phrase("'{text}' is not understood in the IDL of messages", text=word.text),
+                    phrase("'{text}' cannot be used in the IDL of messages", text=word.text),
                     word.start,
                     len(word.text),
                     phrase("write the interface as a .msg, .srv or .action file"),
@@ -197,7 +197,7 @@ class _Reader:
             while depth:
                 token = self._next()
                 if token.kind == "end":
-                    self._fail("MSG120", phrase("the file ends inside of an annotation"), token.start, 0)
+                    self._fail("MSG120", phrase("the file ends inside an annotation"), token.start, 0)
                 depth += {"(": 1, ")": -1}.get(token.text, 0)
                 if name == "default" and token.text == "=":
                     default = self._now
@@ -323,7 +323,7 @@ class _Reader:
         found = quoted(token.text) if token.text else phrase("the end of the file")
         self._fail(
             "MSG120",
-            phrase("found {found} where {wanted} is expected", found=found, wanted=wanted),
+            phrase("{wanted} is expected, but there is {found}", found=found, wanted=wanted),
             token.start,
             len(token.text),
         )

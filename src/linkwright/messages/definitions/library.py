@@ -239,7 +239,7 @@ class Library:
             listed = [other.rpartition("/")[2] for other in same_package]
             hint = did_you_mean(name.name, listed) or self._same_name_elsewhere(name, wanted)
             if hint is None:
-                hint = phrase("'{package}' has {names}", package=name.package, names=joined(listed[:8]))
+                hint = phrase("'{package}' defines {names}", package=name.package, names=joined(listed[:8]))
                 if len(listed) > 8:
                     hint = phrase("{list}, ...", list=hint)
         else:
@@ -254,7 +254,8 @@ class Library:
         if hint is None:
             others = [other for kind in KINDS if kind not in wanted for other in self.names(kind, name.package)]
             hint = next(
-                (phrase("there is '{other}'", other=other) for other in others if other.endswith("/" + name.name)), None
+                (phrase("did you mean '{other}'?", other=other) for other in others if other.endswith("/" + name.name)),
+                None,
             )
         return Diagnostic(
             "MSG101", phrase("there is no {what} '{name}'", what=what, name=name), notes=tuple(notes), hint=hint
@@ -321,7 +322,7 @@ def _read(path: Path) -> SourceText:
 
 
 def _not_a_name(text: str) -> Diagnostic:
-    hint = phrase("the form is 'package/kind/Name', such as 'sensor_msgs/msg/JointState'")
+    hint = phrase("write it as 'package/kind/Name', such as 'sensor_msgs/msg/JointState'")
     guess = re.sub(r"\.|::", "/", text)
     if guess != text and split_name(guess):
         hint = phrase("did you mean {names}?", names=quoted(guess))

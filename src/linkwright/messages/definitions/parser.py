@@ -47,7 +47,9 @@ def read_default(text: str, kind: FieldType) -> object:
     if kind.container is Container.ONE:
         return _read_bounded(text, kind, primitive)
     if not (text.startswith("[") and text.endswith("]")):
-        raise LiteralFault(phrase("the default of '{spelled}' is a list in square brackets", spelled=kind.spelled()))
+        raise LiteralFault(
+            phrase("write the default of '{spelled}' as a list in square brackets", spelled=kind.spelled())
+        )
     values = tuple(_read_bounded(item, kind, primitive) for item in split_list(text[1:-1]))
     if kind.container is Container.ARRAY and len(values) != kind.size:
         raise LiteralFault(
@@ -98,7 +100,9 @@ def split_list(text: str) -> list[str]:
 def _read_bounded(text: str, kind: FieldType, primitive: Primitive) -> Value:
     value = _read(text, kind.base, primitive)
     if kind.string_bound is not None and len(cast(str, value)) > kind.string_bound:
-        raise LiteralFault(phrase("the text is longer than {string_bound} characters", string_bound=kind.string_bound))
+        raise LiteralFault(
+            phrase("the string is longer than {string_bound} characters", string_bound=kind.string_bound)
+        )
     return value
 
 
@@ -114,7 +118,7 @@ def _read(text: str, type_name: str, primitive: Primitive) -> Value:
     if not low <= number <= high:
         raise LiteralFault(
             phrase(
-                "{text} is outside of {type_name}'s range, which is {low} to {high}",
+                "{text} is outside the range of {type_name}, {low} to {high}",
                 text=text,
                 type_name=type_name,
                 low=low,
@@ -147,7 +151,7 @@ def _read_float(text: str, type_name: str, primitive: Primitive) -> float:
     except ValueError:
         raise LiteralFault(phrase("'{text}' is not a number", text=text)) from None
     if math.isfinite(number) and abs(number) > primitive.high:
-        raise LiteralFault(phrase("{text} is outside of {type_name}'s range", text=text, type_name=type_name))
+        raise LiteralFault(phrase("{text} is outside the range of {type_name}", text=text, type_name=type_name))
     return number
 
 
@@ -156,7 +160,7 @@ def _read_text(text: str) -> str:
     if quote not in {'"', "'"}:
         return text
     if len(text) < 2 or not text.endswith(quote) or _closes_early(text, quote):
-        raise LiteralFault(phrase("the text that begins with {quote} does not end with it", quote=quote))
+        raise LiteralFault(phrase("the string that begins with {quote} does not end with it", quote=quote))
     return _ESCAPE.sub(lambda match: _ESCAPES.get(match.group(1), match.group(0)), text[1:-1])
 
 
@@ -181,8 +185,8 @@ _ROS1_TYPES = {
 }
 
 _WITH_MORE_PARTS = {
-    1: phrase("requests and responses are written in a .srv file"),
-    2: phrase("goals are written in a .action file"),
+    1: phrase("write requests and responses in a .srv file"),
+    2: phrase("write goals in a .action file"),
 }
 
 
@@ -245,7 +249,7 @@ class _Reader:
             self._report(
                 "MSG118",
                 phrase(
-                    "a .{kind} file has {count} parts with '---' between them, this one has {other_count}",
+                    "a .{kind} file has {count} parts with '---' between them, but this file has {other_count}",
                     kind=self._kind,
                     count=len(suffixes),
                     other_count=len(sections),
@@ -267,8 +271,8 @@ class _Reader:
             self._report(
                 "MSG118",
                 counted(
-                    "a .{kind} file has {count} part, this '---' begins another",
-                    "a .{kind} file has {count} parts, this '---' begins another",
+                    "a .{kind} file has {count} part, but this '---' begins another",
+                    "a .{kind} file has {count} parts, but this '---' begins another",
                     most,
                     kind=self._kind,
                 ),
@@ -307,7 +311,7 @@ class _Reader:
             sound = sound and string_bound is not None
             if base is not None and base not in {"string", "wstring"}:
                 hint = phrase(
-                    "a bounded sequence is written '{base}[<={string_bound}]'",
+                    "write a bounded sequence as '{base}[<={string_bound}]'",
                     base=match["base"],
                     string_bound=match["string_bound"],
                 )
@@ -348,8 +352,8 @@ class _Reader:
             return None
         own = f"{self._package}/msg/{text}"
         if text in _ROS1_TYPES and not self._known.has_message(own):
-            self._report("MSG117", phrase("the type '{text}' is ROS 1's", text=text), start, len(text),
-                         phrase("in ROS 2 it is {name}", name=_ROS1_TYPES[text]))  # fmt: skip
+            self._report("MSG117", phrase("the type '{text}' is a ROS 1 type", text=text), start, len(text),
+                         phrase("use {name} in ROS 2", name=_ROS1_TYPES[text]))  # fmt: skip
             return None
         if is_interface_name(text):
             return self._message(own, text, start)
@@ -430,7 +434,7 @@ class _Reader:
                 ),
                 at,
                 len(name),
-                phrase("constants are numbers, bools and strings"),
+                phrase("constants must be numbers, bools or strings"),
             )
             return
         try:
@@ -445,7 +449,7 @@ class _Reader:
 
     def _is_new(self, section: _Section, name: str, at: int) -> bool:
         if name in section.names:
-            self._report("MSG115", phrase("there are two '{name}'", name=name), at, len(name))
+            self._report("MSG115", phrase("the name '{name}' is used twice", name=name), at, len(name))
             return False
         section.names.add(name)
         return True

@@ -263,5 +263,5 @@ def _message_class(name: str) -> Any:
 
 def _not_understood(text: str, reason: object) -> LinkwrightError:
     return LinkwrightError(
-        Diagnostic("NODE434", phrase("'{text}' is not understood: {reason}", text=text, reason=foreign(reason)))
+        Diagnostic("NODE434", phrase("'{text}' cannot be parsed: {reason}", text=text, reason=foreign(reason)))
     )

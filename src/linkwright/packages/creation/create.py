@@ -113,7 +113,7 @@ def check_request(request: PackageRequest) -> list[Diagnostic]:
         findings.append(
             Diagnostic(
                 "PKG207",
-                phrase("the {what} '{package}' exists already", what=term(what), package=shown(package)),
+                phrase("the {what} '{package}' already exists", what=term(what), package=shown(package)),
                 hint=hint,
             )
         )

@@ -95,7 +95,7 @@ def where_it_is(error: ImportError) -> Phrase | None:
     name, module = missing
     homes = getattr(getattr(sys.modules.get(module), "__loader__", None), "homes", None)
     found = homes(name) if homes else []
-    return phrase("it is in {modules}", modules=quoted_names(found, " or ")) if found else None
+    return phrase("import it from {modules}", modules=quoted_names(found, " or ")) if found else None
 
 
 def provider_hint(module: str) -> Phrase:

@@ -199,7 +199,8 @@ class ExecuteLocal(Action):
         if self._started:
             text = f"ExecuteLocal action '{self._description.final_name}': executed more than once: {self.describe()}"
             message = phrase(
-                "the action of process '{final_name}' is visited a second time", final_name=self._description.final_name
+                "the action of process '{final_name}' is executed a second time",
+                final_name=self._description.final_name,
             )
             hint = phrase("create an action for each start, for example in a function")
             raise error_at(self.place, "LAUNCH141", message, hint, ros_error=RuntimeError(text))

@@ -88,7 +88,7 @@ class ForEach(Action):
                     phrase("values '{text}' are not YAML: {error}", text=text.strip(), error=foreign(error)),
                 ) from error
             if not isinstance(values, dict):
-                hint = phrase("write each set of values as {name: value, ...}, and ';' between them")
+                hint = phrase("write each set of values as {name: value, ...}, and separate them with ';'")
                 message = phrase("values '{text}' of the loop are not a mapping", text=text.strip())
                 raise error_at(self.place, "LAUNCH151", message, hint)
             entities += as_entities(self._function(**values))

@@ -95,7 +95,7 @@ def _parse_on_exit(entity: Entity, kwargs: dict[str, Any]) -> None:
             "Other on_exit actions not yet supported"
         )
         message = phrase(
-            "attribute 'on_exit' of '{type_name}' is '{on_exit}', and can only be 'shutdown'",
+            "attribute 'on_exit' of '{type_name}' must be 'shutdown', not '{on_exit}'",
             type_name=entity.type_name,
             on_exit=on_exit,
         )

@@ -132,7 +132,7 @@ class LocalSubstitution(Substitution):
         first, *rest = self.expression.split(".")
         if first not in known:
             ros_error = SubstitutionFailure(f"no local '{first}' in this context")
-            message = phrase("'{first}' is not known at this moment", first=first)
+            message = phrase("the launch context has no local '{first}' at this point", first=first)
             raise error_at(self.place, "LAUNCH123", message, did_you_mean(first, known), ros_error=ros_error)
         value = known[first]
         for name in rest:
