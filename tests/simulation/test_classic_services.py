@@ -81,7 +81,7 @@ async def test_forces_of_several_add_up():
 async def test_a_force_in_another_frame_is_refused():
     async with served(pushed("<force_frame>map</force_frame>")) as (server, _, log):
         assert not server.plugins("crate")
-        assert [each.text for each in log if "<force_frame> is either" in each.text]
+        assert [each.text for each in log if "<force_frame> must be" in each.text]
 
 
 async def test_states_of_all_models_and_links_are_told():
@@ -113,7 +113,7 @@ async def test_services_of_states_are_in_the_namespace_of_the_plugin():
         assert not answer.success
         assert [each.text for each in log] == [
             "get_entity_state: there is no model or link 'who'",
-            "set_entity_state: 'ground' is fixed to the world (delete it, and spawn it again where it should be)",
+            "set_entity_state: 'ground' is fixed to the world (delete it, and spawn it again at the intended pose)",
         ]
 
 
@@ -168,7 +168,7 @@ async def test_masses_and_joints_are_changed_by_services():
         server.advance(SECOND // 10)
         assert server.simulation.model_pose("crate")[2] == pytest.approx(begin)
         refused = await ask(graph, server, kind, "/set_link_properties", **(facts | {"ixx": 9.0}))
-        assert (refused.success, refused.status_message) == (False, "no body has such a mass or inertia")
+        assert (refused.success, refused.status_message) == (False, "this mass or inertia is not physically possible")
 
         config = get_message("gazebo_msgs/msg/ODEJointProperties")(damping=[2.0], hi_stop=[0.25])
         kind = "gazebo_msgs/srv/SetJointProperties"

@@ -113,7 +113,7 @@ async def test_after_a_reset_it_stands_still_at_the_start():
 @pytest.mark.parametrize(
     ("plugin", "words"),
     [
-        (classic("<right_joint>front</right_joint>"), "1 left wheels and 2 right ones"),
+        (classic("<right_joint>front</right_joint>"), "1 left wheels, but 2 right wheels"),
         (classic().replace("0.12", "0"), "must be positive"),
         (classic().replace(">left_joint<", ">left_jiont<"), "no joint 'left_jiont' moves"),
     ],

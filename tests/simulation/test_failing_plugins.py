@@ -125,7 +125,7 @@ async def test_a_plugin_that_fails_anywhere_ends_and_nothing_else_does(where):
         expected = "TypeError" if where == PUBLISHING else f"FaultError: {where}"
         assert [expected in error for error in errors] == [True], errors
         assert errors[0].startswith("test.world:14:"), "where it is declared"
-        assert "'faulty' ended because its code failed" in errors[0]
+        assert "'faulty' stopped because its code failed" in errors[0]
         assert "test_failing_plugins.py" in errors[0] or where == PUBLISHING
 
 

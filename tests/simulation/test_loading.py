@@ -158,7 +158,7 @@ async def test_plugins_of_what_has_not_changed_run_on_and_those_of_others_restar
         (text(box("one", "0 0 what 0 0 0")), 103, "a.world:1:"),
         ('<sdf version="1.7"><model name="m"><link name="l"/></model></sdf>', 101, "there is no world in"),
         (text("<include><uri>model://nowhere_at_all</uri></include>"), 104, "a.world:1:"),
-        (text(box("spawned", "0 0 0 0 0 0")), 4, "there is already a model 'spawned'"),
+        (text(box("spawned", "0 0 0 0 0 0")), 4, "a model 'spawned' already exists"),
         (text('<physics type="ode"><max_step_size>-1</max_step_size></physics>'), 4, "a time step of -1.0 s"),
         (text("<includ/>"), 106, "<includ> in <world> is not read"),
     ],

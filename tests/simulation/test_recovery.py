@@ -128,9 +128,9 @@ def test_models_that_begin_in_each_other_are_told_the_deepest_first():
     )
     texts = [str(overlap.message) for overlap in overlaps(simulation)]
     assert texts == [
-        "'lower' begins 0.40 m inside 'ground'",
-        "'low' begins 0.30 m inside 'ground'",
-        "'beside' begins 0.10 m inside 'lower'",
+        "'lower' starts 0.40 m inside 'ground'",
+        "'low' starts 0.30 m inside 'ground'",
+        "'beside' starts 0.10 m inside 'lower'",
     ]
     assert [str(overlap.message) for overlap in overlaps(simulation, {"beside"})] == texts[2:]
 
@@ -144,6 +144,6 @@ def test_many_overlaps_are_counted():
 
 async def test_overlaps_are_logged_at_the_start_and_when_something_is_put_in():
     async with served(GROUND, free("low", "box", "0 0 0.2 0 0 0")) as (server, _, log):
-        assert any("'low' begins 0.30 m inside 'ground'" in line.text for line in log)
+        assert any("'low' starts 0.30 m inside 'ground'" in line.text for line in log)
         server.spawn(model(free("new", "ball", "0 0 0 0 0 0")), "new", (0.0, 0.0, 0.6, 0.0, 0.0, 0.0, 1.0))
-        assert any("'new' begins 0.60 m inside 'low'" in line.text for line in log)
+        assert any("'new' starts 0.60 m inside 'low'" in line.text for line in log)

@@ -111,7 +111,7 @@ async def test_models_come_and_go_by_services(tmp_path):
 @pytest.mark.parametrize(
     ("xml", "reason"),
     [
-        (URDF, "there is already a model 'one'"),
+        (URDF, "a model 'one' already exists"),
         ("<robot", "<the description>:1:1"),
         ("<html/>", "the root element is <html>"),
         ('<sdf version="1.7"><world name="w"/></sdf>', "it is a world"),
@@ -241,9 +241,12 @@ async def test_why_a_service_without_a_text_refuses_is_logged(tmp_path):
         assert [each.text for each in it.log if each.level == LogLevel.ERROR] == [
             (
                 "/set_entity_state: 'ground_plane' is fixed to the world "
-                "(delete it, and spawn it again where it should be)"
+                "(delete it, and spawn it again at the intended pose)"
             ),
-            "/set_entity_state: 'two' is connected with 'one' by a joint of the world (move 'one', which it goes with)",
+            (
+                "/set_entity_state: 'two' is connected with 'one' by a joint of the world "
+                "(move 'one', to which it is connected)"
+            ),
             "/set_entity_state: there is no model or link 'three'",
             "/get_entity_state: there is no model or link 'on' (did you mean 'one'?)",
             "/clear_link_wrenches: there is no model or link 'wheel'",

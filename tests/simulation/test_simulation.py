@@ -89,7 +89,7 @@ def test_what_comes_and_goes_leaves_the_others_as_they_are():
 
 def test_two_of_one_name_are_refused():
     simulation = simulated(box("one", "0 0 5 0 0 0"))
-    with pytest.raises(LinkwrightError, match="already a model 'one'"):
+    with pytest.raises(LinkwrightError, match="a model 'one' already exists"):
         simulation.spawn(model(box("one", "0 0 0 0 0 0")), "one")
 
 
@@ -129,5 +129,5 @@ def test_a_second_model_of_a_name_is_left_out():
 
 def test_more_links_than_can_be_simulated_are_refused(monkeypatch):
     monkeypatch.setattr("linkwright.simulation.scene.compiling.MOST_LINKS", 3)
-    with pytest.raises(LinkwrightError, match="a world of 4 links is more than can be simulated"):
+    with pytest.raises(LinkwrightError, match="the world has 4 links, more than can be simulated"):
         simulated(*(box(f"box{index}", f"{index} 0 5 0 0 0") for index in range(4)))

@@ -88,7 +88,7 @@ def test_a_joint_between_what_is_held_already_closes_a_loop_or_is_told_of():
     assert simulation.model_pose("bridge")[:3] == pytest.approx((1, 0, 3), abs=1e-3)
     simulation = simulated(*ends, middle, *held, both[0], joint("prismatic", "b", "bridge", "<axis/>", "rail"))
     assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in simulation.scene.diagnostics] == [
-        ("SIM118", "joint 'rail' is left out: one of type prismatic closes no loop")
+        ("SIM118", "joint 'rail' is left out: a joint of type prismatic cannot close a loop")
     ]
 
 

@@ -309,9 +309,7 @@ class Simulation:
             self._stepper.make_steps(count)
         except mujoco.FatalError as error:
             reason = str(error).splitlines()[0]
-            raise LinkwrightError(
-                Diagnostic("SIM121", phrase("MuJoCo gave up: {said}", said=foreign(reason)))
-            ) from None
+            raise LinkwrightError(Diagnostic("SIM121", phrase("MuJoCo failed: {said}", said=foreign(reason)))) from None
         self._current = False
         dot = mujoco.mju_dot  # half the time of a comparison; numpy's dot warns of overflows
         if not (dot(positions, positions) < _SURELY and dot(velocities, velocities) < _SURELY) and not self._is_sound():
@@ -341,7 +339,7 @@ class Simulation:
         mujoco.mj_resetData(model, data)
         data.qpos[:], data.qvel[:] = before
         values = {"time": f"{self.seconds:.3f}", "link": model.body(body).name}
-        message = phrase("the simulation became unstable at {time} s, at the link '{link}'", **values)
+        message = phrase("the simulation became unstable at {time} s, at link '{link}'", **values)
         hint = phrase("check its mass, its inertia and its overlaps, or make the time step shorter")
         return UnstableError(Diagnostic("SIM120", message, hint=hint))
 
@@ -434,11 +432,11 @@ class Simulation:
             return
         if not self.moves_freely(name):
             message = phrase("'{name}' is fixed to the world", name=name)
-            hint = phrase("delete it, and spawn it again where it should be")
+            hint = phrase("delete it, and spawn it again at the intended pose")
             if scene_model.hangs_on:
                 other = min(scene_model.hangs_on)
                 message = phrase("'{name}' is connected with '{other}' by a joint of the world", name=name, other=other)
-                hint = phrase("move '{other}', which it goes with", other=other)
+                hint = phrase("move '{other}', to which it is connected", other=other)
             raise LinkwrightError(Diagnostic("SIM103", message, hint=hint))
         root, offset = self._root(name)
         joint = self.data.joint(f"{root}#free")

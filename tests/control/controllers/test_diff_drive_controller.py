@@ -165,7 +165,7 @@ async def test_a_command_that_is_no_number_stops_the_robot(wheels, value):
     command(wheels, 1.0, value, at=2)
     await wheels.step(controller)
     assert speeds(wheels) == [0.0, 0.0]
-    assert warnings(wheels) == ["a command that is not a finite number is refused: the drive stops"]
+    assert warnings(wheels) == ["a command that is not a finite number is rejected: the drive stops"]
 
 
 async def test_commands_of_humble_may_have_no_header(wheels):
@@ -302,14 +302,14 @@ async def test_others_may_say_where_the_robot_is(wheels):
         ),
         ({"wheel_radius": 0.0}, "Parameter 'wheel_radius' with the value 0 must be above 0"),
         ({"wheel_separation": -1.0}, "Parameter 'wheel_separation' with the value -1 must be above 0"),
-        ({"pose_covariance_diagonal": [1.0]}, "'pose_covariance_diagonal' needs 6 numbers, and has 1"),
+        ({"pose_covariance_diagonal": [1.0]}, "'pose_covariance_diagonal' needs 6 numbers, but has 1"),
         (
             {"linear": {"x": {"has_velocity_limits": True}}},
             "Error configuring linear.x speed limiter: Cannot apply velocity limits if max_velocity is not specified",
         ),
         (
             {"angular": {"z": {"max_velocity": 1.0, "min_velocity": 2.0}}},
-            "the least velocity of 'angular.z', 2, is above the greatest one, 1",
+            "the minimum velocity of 'angular.z', 2, is above the maximum, 1",
         ),
     ],
 )

@@ -54,7 +54,7 @@ def test_mistakes_are_told_and_left_out():
     assert findings == [
         "CTL113 <ros2_control> has joint 'kne', which the robot does not have",
         "CTL114 Mimicked joint 'hipp' not found",
-        "CTL111 <ros2_control> lacks a name, or its type 'sytem' is none",
-        "CTL112 <ros2_control> 'c' names no plugin that drives it",
+        "CTL111 <ros2_control> has no name, or its type 'sytem' is not valid",
+        "CTL112 <ros2_control> 'c' does not name a hardware plugin",
     ]
     assert described("<robot name='r'><link name='a'/></robot>")[1] == ["CTL110 the description has no <ros2_control>"]

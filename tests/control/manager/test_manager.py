@@ -292,5 +292,8 @@ async def test_what_is_asynchronous_in_ros_runs_in_the_loop_which_is_said(made, 
     it.cycle(1, 0.01)
     assert value(it, "hip/velocity") == 0.5
     logged = [each for each in logged("INFO") if "is_async" in each]
-    assert logged[0] == "hardware 'arm' asks for is_async: it is read and written in the loop, as all are"
+    assert (
+        logged[0]
+        == "hardware 'arm' requests is_async, which is not supported: it is read and written in the control loop"
+    )
     assert len(logged) == (1 if distribution == "humble" else 2)

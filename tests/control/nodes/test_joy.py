@@ -139,7 +139,7 @@ async def test_a_joystick_that_is_pulled_out_lets_go_of_everything(joystick, sta
     joystick.say((BUTTON, 0, 1), (AXIS, 0, 32767))
     await eventually(lambda: heard and list(heard[-1].axes))
     joystick.pull_out()
-    await eventually(lambda: "the joystick is gone; waiting for it" in logged("WARN"))
+    await eventually(lambda: "the joystick was disconnected; waiting for it" in logged("WARN"))
     await stage.graph.settle()
     assert (list(heard[-1].axes), list(heard[-1].buttons)) == ([0.0], [0])
     joystick.plug_in()

@@ -132,7 +132,7 @@ async def test_what_is_not_whole_is_refused(stage, topics, named):
 
 async def test_without_topics_it_says_so_and_runs(stage, logged):
     TwistMux(stage.graph, NodeOptions())
-    assert logged("WARN") == ["no topics.NAME.topic is given, so nothing is forwarded"]
+    assert logged("WARN") == ["no parameter topics.NAME.topic is set, so nothing is forwarded"]
 
 
 async def test_two_on_one_of_its_topics_are_told_and_not_what_it_chooses_between(traffic):
@@ -150,7 +150,7 @@ async def test_two_on_one_of_its_topics_are_told_and_not_what_it_chooses_between
                 await traffic.stage.clock.advance(0.1)
 
     def logged():
-        return [each.text for each in traffic.stage.log if "two drivers" in each.text]
+        return [each.text for each in traffic.stage.log if "two nodes drive the robot" in each.text]
 
     await drive(tablet, joystick)
     assert not logged()

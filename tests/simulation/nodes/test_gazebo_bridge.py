@@ -72,7 +72,7 @@ def test_the_file_of_our_own_package():
         ("- 1", "entry 1 is not a mapping"),
         ("- topic_name: a\n  ros_type_name: b", "entry 1 has no 'gz_type_name'"),
         ("- ros_type_name: a\n  gz_type_name: b", "entry 1 has no 'ros_topic_name'"),
-        ("- topic_name: a\n  ros_type_name: b\n  gz_type_name: c\n  direction: UP", "no such direction as 'UP'"),
+        ("- topic_name: a\n  ros_type_name: b\n  gz_type_name: c\n  direction: UP", "the unknown direction 'UP'"),
         ("- [", "is not YAML"),
     ],
 )
@@ -107,7 +107,7 @@ async def test_a_service_among_the_topics_is_told_of_and_the_topics_are_bridged(
     words = [f"/world/empty/control@ros_gz_interfaces/srv/ControlWorld{types}", SCAN]
     ParameterBridge(stage.graph, NodeOptions(arguments=words))
     assert "/scan" in stage.graph.topics()
-    assert logged("WARN") == ["/world/empty/control is not bridged: services of gz are not here"]
+    assert logged("WARN") == ["/world/empty/control is not bridged: services of gz are not supported"]
 
 
 async def test_a_remapped_name_is_bridged(stage):

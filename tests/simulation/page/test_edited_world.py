@@ -73,7 +73,7 @@ def test_no_other_file_is_written_over(tmp_path):
     path.write_text(PLAIN)
     other.write_text("mine")
     world = edited(path)
-    with pytest.raises(EditError, match=r"there is a file '.*other\.world' already"):
+    with pytest.raises(EditError, match=r"the file '.*other\.world' already exists"):
         world.save("other.world")
     with pytest.raises(EditError, match=r"cannot write '.*none/w.world'"):
         world.save("none/w.world")
@@ -94,7 +94,7 @@ def test_a_world_that_xacro_makes_is_saved_as_what_came_of_it(tmp_path):
     path.write_text(source.replace(">2 0 0.250", ">${1 + 1} 0 0.250"))
     world = edited(path)
     assert (world.file, world.path) == (None, tmp_path / "w.world")
-    with pytest.raises(EditError, match="no file of its own"):
+    with pytest.raises(EditError, match="no file yet"):
         world.save(None)
     with pytest.raises(EditError, match="it must end in"):
         world.save("w.world.xacro")

@@ -197,7 +197,7 @@ async def test_a_world_without_a_file_is_saved_as_one(tmp_path):
         await client.send("delete_entities", names=["box"])
         assert (await simulation.loaded()).resource_string == PLAIN.replace(BOX, "")
         await client.send("save_world", path=None)
-        assert "no file of its own" in (await client.until("simulation_notice"))["text"]
+        assert "no file yet" in (await client.until("simulation_notice"))["text"]
         path = tmp_path / "new.world"
         await client.send("save_world", path=str(path))
         assert (await client.until("modelling_state", file=str(path)))["unsaved"] is False

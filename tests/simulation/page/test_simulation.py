@@ -160,7 +160,7 @@ async def test_a_second_model_of_a_name_is_given_another_which_is_told(tmp_path)
         await client.send("spawn_model", address=str(robot), position=[1, 2, 3])
         request = await simulation.request("/spawn_entity")
         assert (request.name, request.robot_namespace) == ("ground_3", "/ground_3")
-        assert "this one is 'ground_3'" in (await client.until("simulation_notice"))["text"]
+        assert "the new one is named 'ground_3'" in (await client.until("simulation_notice"))["text"]
 
 
 async def test_what_the_simulation_refuses_is_told():
@@ -195,7 +195,7 @@ async def test_a_model_that_cannot_be_moved_is_told_by_its_name():
     async with simulated() as (_, client):
         await client.send("drag_model", model="ground", begins=True, offset=[0, 0, 0])
         notice = await client.until("simulation_notice")
-        assert notice["text"] == "'ground' cannot be moved: it is fixed to the world, or gone"
+        assert notice["text"] == "'ground' cannot be moved: it is fixed to the world, or no longer exists"
 
 
 async def test_a_link_is_pushed_at_a_point_for_a_moment():

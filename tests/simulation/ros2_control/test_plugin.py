@@ -196,7 +196,9 @@ async def test_what_is_not_in_the_model_is_told(file):
         await world.describe(description(text))
         joint, sensor = (each.text for each in log if each.level.name == "WARN")
         assert joint == "Skipping joint in the URDF named 'third_joint' which is not in the gazebo model."
-        assert sensor.startswith("sensor 'ft' of <ros2_control>: the model has no IMU and no force and torque sensor")
+        assert sensor.startswith(
+            "sensor 'ft' of <ros2_control> has no IMU or force-torque sensor of this name in the model"
+        )
         interfaces = await world.ask("list_hardware_interfaces")
         assert [command_interface.name for command_interface in interfaces.command_interfaces] == [
             "left_joint/velocity"

@@ -23,7 +23,7 @@ def variances(name: str, values: tuple[float, ...]) -> Variances:
     """
     if len(values) != _AXES:
         raise ControllerError(
-            phrase("'{name}' needs {needed} numbers, and has {count}", name=name, needed=_AXES, count=len(values))
+            phrase("'{name}' needs {needed} numbers, but has {count}", name=name, needed=_AXES, count=len(values))
         )
     return values
 

@@ -100,7 +100,7 @@ class _Forwarding(Controller[P], Generic[P]):
             )
             return
         if any(value != value for value in wanted):
-            self.node.logger.error("a command with NaN is not passed on", throttle_duration_sec=1.0)
+            self.node.logger.error("a command with NaN is not forwarded", throttle_duration_sec=1.0)
             return
         self._wanted = wanted
 

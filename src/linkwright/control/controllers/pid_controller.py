@@ -27,7 +27,7 @@ _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 def _one_or_two(name: str, value: tuple[str, ...]) -> Phrase | None:
     """Validate a list of interfaces: one interface, or one and its derivative."""
     if not 1 <= len(value) <= 2:
-        return phrase("Parameter '{name}' is one interface, or an interface and its derivative", name=name)
+        return phrase("Parameter '{name}' must be one interface, or an interface and its derivative", name=name)
     return None
 
 

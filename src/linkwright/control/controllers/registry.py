@@ -17,8 +17,9 @@ GROUP = "linkwright.controllers"
 
 _LEFT_OUT = {
     "admittance_controller/AdmittanceController": phrase(
-        "it is left out: it needs a plugin of kinematics and a force-torque sensor; "
-        "a joint_trajectory_controller moves the same joints without yielding"
+        "Linkwright does not have this controller, which needs a kinematics plugin and a "
+        "force-torque sensor; use a joint_trajectory_controller, which moves the same joints without "
+        "compliance"
     ),
 }
 """Controllers of ros2_controllers that are known and not here, and why."""
@@ -45,6 +46,6 @@ def controller_class(type_name: str) -> type[Controller[Any]]:
         found: type[Controller[Any]] = entry.load()
     except Exception as error:
         message = phrase("the controller '{name}' cannot be imported", name=type_name)
-        hint = phrase("'{place}' brings it: {problem}", place=entry.distribution, problem=foreign(error))
+        hint = phrase("'{place}' provides it: {problem}", place=entry.distribution, problem=foreign(error))
         raise LinkwrightError(Diagnostic("CTL104", message, hint=hint)) from error
     return found

@@ -83,7 +83,7 @@ def _bounds(axis: str, kind: str, least: float, greatest: float) -> Bounds:
     if least > greatest:
         raise ControllerError(
             phrase(
-                "the least {kind} of '{axis}', {least:g}, is above the greatest one, {greatest:g}",
+                "the minimum {kind} of '{axis}', {least:g}, is above the maximum, {greatest:g}",
                 kind=kind,
                 axis=axis,
                 least=least,

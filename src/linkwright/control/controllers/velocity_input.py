@@ -107,7 +107,7 @@ class VelocityInput:
         since = stamp if 0 < stamp <= now else now
         if not all(map(isfinite, velocity)):
             self._command = None
-            self._logger.warning(phrase("a command that is not a finite number is refused: the drive stops"))
+            self._logger.warning(phrase("a command that is not a finite number is rejected: the drive stops"))
         elif now - since <= self._timeout or self._timeout == 0:
             self._command = velocity, (now if self._timeout == 0 else since)
         else:

@@ -128,6 +128,6 @@ def hardware_class(plugin: str) -> type[Hardware] | None:
         found: type[Hardware] = entry.load()
     except Exception as error:
         message = phrase("the hardware '{name}' cannot be imported", name=plugin)
-        hint = phrase("'{place}' brings it: {problem}", place=entry.distribution, problem=foreign(error))
+        hint = phrase("'{place}' provides it: {problem}", place=entry.distribution, problem=foreign(error))
         raise LinkwrightError(Diagnostic("CTL121", message, hint=hint)) from error
     return found

@@ -115,7 +115,7 @@ def hardware_of(robot: Robot) -> tuple[list[HardwareDescription], list[Diagnosti
             named.setdefault(hardware.name, hardware)
     if not any(extension.tag == "ros2_control" for extension in robot.extensions):
         message = phrase("the description has no <ros2_control>")
-        hint = phrase("it names the hardware, its joints and their interfaces")
+        hint = phrase("add <ros2_control> with the hardware, its joints and their interfaces")
         reader.findings.append(Diagnostic("CTL110", message, severity=Severity.WARNING, hint=hint))
     return list(named.values()), reader.findings
 
@@ -128,13 +128,15 @@ class _Reader:
     def hardware(self, element: Element) -> HardwareDescription | None:
         name, kind = element.attributes.get("name", ""), element.attributes.get("type", "")
         if not name or kind not in _TYPES:
-            message = phrase("<ros2_control> lacks a name, or its type '{kind}' is none", kind=kind)
-            self._report("CTL111", message, element, phrase("its type is system, actuator or sensor"))
+            message = phrase("<ros2_control> has no name, or its type '{kind}' is not valid", kind=kind)
+            self._report(
+                "CTL111", message, element, phrase('give it a name, and write type="system", "actuator" or "sensor"')
+            )
             return None
         hardware = element.first("hardware")
         plugin = hardware.first("plugin") if hardware is not None else None
         if plugin is None or not plugin.text().strip():
-            message = phrase("<ros2_control> '{name}' names no plugin that drives it", name=name)
+            message = phrase("<ros2_control> '{name}' does not name a hardware plugin", name=name)
             self._report("CTL112", message, element, phrase("write <hardware><plugin>mock_components/GenericSystem"))
             return None
         joints = [self._component(child, "joint") for child in element.elements("joint")]

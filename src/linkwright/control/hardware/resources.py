@@ -78,7 +78,8 @@ class Resources:
             if description.is_async:
                 self._logger.info(
                     phrase(
-                        "hardware '{name}' asks for is_async: it is read and written in the loop, as all are",
+                        "hardware '{name}' requests is_async, which is not supported: it is read and written in the "
+                        "control loop",
                         name=description.name,
                     )
                 )

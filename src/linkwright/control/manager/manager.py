@@ -121,7 +121,9 @@ class ControllerManager:
             node = controller_node(self.node, name, self._process)
             rate = node.declare_parameter("update_rate", int(self.update_rate)).value
             if not is_before_iron() and node.declare_parameter("is_async", False).value:
-                node.get_logger().info(phrase("is_async is asked for: it is updated in the loop, as all are"))
+                node.get_logger().info(
+                    phrase("is_async is requested, but not supported: the controller is updated in the control loop")
+                )
             place = ControllerPlace(name, ControllerNode(node, self._exchange), float(rate), self.robot_description)
             return made.variant(node.undeclared_overrides())(place)
         except LinkwrightError as error:

@@ -207,7 +207,7 @@ class ParameterBridge(_Bridge):
         name, _, types = word.partition("@")
         is_service = "/srv/" in types.partition("@")[0]
         if is_service:
-            self._node.get_logger().warning(f"{name} is not bridged: services of gz are not here")
+            self._node.get_logger().warning(f"{name} is not bridged: services of gz are not supported")
         return is_service
 
 
@@ -241,7 +241,7 @@ class ImageBridge(_Bridge):
                 message = compressed(image)
             except ModuleNotFoundError as error:
                 text = phrase(
-                    "images are not compressed: {name} is missing; {hint}",
+                    "images are not compressed, because {name} is missing; {hint}",
                     name=error.name,
                     hint=install_hint("image"),
                 )
@@ -307,7 +307,7 @@ def _topic_of(entry: Any, number: int, path: str) -> BridgedTopic:
             raise _no_topics(path, phrase("entry {number} has no '{key}'", number=number, key=key))
     direction = entry.get("direction", "BIDIRECTIONAL")
     if direction not in _DIRECTIONS.values():
-        reason = phrase("entry {number} has no such direction as '{value}'", number=number, value=str(direction))
+        reason = phrase("entry {number} has the unknown direction '{value}'", number=number, value=str(direction))
         raise _no_topics(path, reason)
     queues = [entry.get(f"{side}_queue", _QUEUE) for side in ("publisher", "subscriber")]
     for side, value in zip(("publisher", "subscriber"), queues, strict=True):

@@ -53,7 +53,7 @@ class Create(EntitySpawner):
         elif "param" in source:
             self._spawn(self._parameter(source["param"]))
         else:
-            message = phrase("create is not told what to put into the world")
+            message = phrase("the command line of create names no model to add to the world")
             hint = phrase("give it one of -topic, -file, -string and -param")
             raise LinkwrightError(Diagnostic("NODE812", message, hint=hint))
 

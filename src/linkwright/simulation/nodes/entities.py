@@ -39,7 +39,9 @@ class Remove(SimulatorClient):
             if not name:
                 hint = phrase("give it the parameter 'entity_name'")
                 raise LinkwrightError(
-                    Diagnostic("NODE812", phrase("{program} is not told which model", program="remove"), hint=hint)
+                    Diagnostic(
+                        "NODE812", phrase("the command line of {program} names no model", program="remove"), hint=hint
+                    )
                 )
             self._remove(name)
 
@@ -120,7 +122,7 @@ def _read(parser: _Parser, words: Sequence[str]) -> argparse.Namespace:
     """
     arguments = parser.parse_args(words)
     if not arguments.name:
-        message = phrase("{program} is not told which model", program=parser.prog)
-        hint = phrase("name it by --name; models have no numbers here")
+        message = phrase("the command line of {program} names no model", program=parser.prog)
+        hint = phrase("give its name with --name; models have no entity numbers in Linkwright")
         raise LinkwrightError(Diagnostic("NODE812", message, hint=hint))
     return arguments

@@ -13,4 +13,6 @@ class Window(SingleNode):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        self._node.get_logger().info("there is no window of Gazebo here: the page in the browser shows the world")
+        self._node.get_logger().info(
+            "Linkwright does not open a window of Gazebo: the page in the browser shows the world"
+        )

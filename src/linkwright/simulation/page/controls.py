@@ -249,7 +249,7 @@ class SimulationFeature(PageFeature):
             drag.calling = False
             self._put(page, drag)
 
-        fixed = phrase("'{model}' cannot be moved: it is fixed to the world, or gone", model=drag.model)
+        fixed = phrase("'{model}' cannot be moved: it is fixed to the world, or no longer exists", model=drag.model)
         self._services.ask(page, "gazebo_msgs/srv/SetEntityState", "/set_entity_state", {"state": state}, put, fixed)
 
     def _push(self, page: Page, message: PushLink) -> None:
@@ -270,8 +270,8 @@ def _report_added(page: Page, name: str, free: str, response: Any) -> None:
     page.send(ModelAdded(free))
     if free != name:
         notice = phrase(
-            "There is a '{name}' already: this one is '{free}', and the topics of its plugins begin with /{free}. "
-            "Frames of both have the same names.",
+            "A model '{name}' already exists: the new one is named '{free}', and the topics of its "
+            "plugins begin with /{free}. The frames of both models have the same names.",
             name=name,
             free=free,
         )

@@ -105,7 +105,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         if radius is None:
             raise self.parameter_error(
                 phrase(
-                    "plugin '{plugin}': the wheel on '{joint}' has no collision that is round",
+                    "plugin '{plugin}': the wheel on '{joint}' has no round collision",
                     plugin=self.place.name,
                     joint=self.parameters.rear_right_joint,
                 )
@@ -124,7 +124,9 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
             [(a + b) / 2.0 for a, b in zip(back_left, back_right, strict=True)],
         )
         if not (self._separation > 0.0 and self._base > 0.0):
-            raise self.parameter_error(phrase("plugin '{plugin}': its wheels are in one place", plugin=self.place.name))
+            raise self.parameter_error(
+                phrase("plugin '{plugin}': its wheels are all in the same place", plugin=self.place.name)
+            )
 
     def _commanded(self, twist: Any) -> None:
         parameters = self.parameters

@@ -5,7 +5,7 @@ from __future__ import annotations
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.sdf.plugins import library_name
 
-_STILL_AIR = phrase("in still air, the velocity that gz-sim-odometry-publisher-system publishes")
+_STILL_AIR = phrase("the velocity that gz-sim-odometry-publisher-system publishes, in still air")
 _WHEELS = phrase("wheels, and gz-sim-diff-drive-system")
 _MOVED = phrase("gz-sim-velocity-control-system")
 _WIDE = phrase("a camera with a wide <horizontal_fov>")

@@ -106,7 +106,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         """Create motors for the wheels; `sizes` holds the separation and the radius of each pair, in m."""
         if len(left) != len(right):
             message = phrase(
-                "plugin '{plugin}' has {left} left wheels and {right} right ones",
+                "plugin '{plugin}' has {left} left wheels, but {right} right wheels",
                 plugin=self.place.name,
                 left=len(left),
                 right=len(right),
@@ -114,7 +114,10 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
             raise self.parameter_error(message)
         if any(not (separation > 0.0 and radius > 0.0) for separation, radius in sizes):
             raise self.parameter_error(
-                phrase("plugin '{plugin}': distance and size of wheels must be positive", plugin=self.place.name)
+                phrase(
+                    "plugin '{plugin}': the separation and the diameter of the wheels must be positive",
+                    plugin=self.place.name,
+                )
             )
         pairs = []
         for names, (separation, radius) in zip(zip(left, right, strict=True), sizes, strict=False):

@@ -21,7 +21,7 @@ def findings_of(error: Exception, name: str, element: Element | None) -> list[Di
     if isinstance(error, LinkwrightError):
         return list(error.diagnostics)
     reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-    message = phrase("'{plugin}' ended because its code failed: {error}", plugin=name, error=foreign(reason))
+    message = phrase("'{plugin}' stopped because its code failed: {error}", plugin=name, error=foreign(reason))
     hint = phrase("everything else continues without it")
     if places := extract_tb(error.__traceback__):
         where = f"{Path(places[-1].filename).name}:{places[-1].lineno}"

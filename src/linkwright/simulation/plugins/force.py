@@ -43,7 +43,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         self._link = self.link(parameters.link_name)
         if parameters.force_frame not in ("world", "link"):
             raise self.parameter_error(
-                phrase("plugin '{plugin}': <force_frame> is either 'world' or 'link'", plugin=self.place.name)
+                phrase("plugin '{plugin}': <force_frame> must be 'world' or 'link'", plugin=self.place.name)
             )
         self.simulation.keep_awake(self._link)
         self._wrench = _STILL

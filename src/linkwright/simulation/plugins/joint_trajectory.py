@@ -158,7 +158,7 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
         if strange:
             names, plugin = joined(strange), self.place.name
             self.node.logger.warning(
-                phrase("plugin '{plugin}' moves no joint that is called {names}", plugin=plugin, names=names)
+                phrase("plugin '{plugin}' does not move a joint named {names}", plugin=plugin, names=names)
             )
         start = _nanoseconds(message.header.stamp) if self.parameters.use_header_start_time else 0
         if not message.points:

@@ -53,7 +53,10 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         parameters, simulation = self.parameters, self.simulation
         if not (min(parameters.wheel_separation, parameters.wheelbase) > 0.0 and parameters.wheel_radius > 0.0):
             raise self.parameter_error(
-                phrase("plugin '{plugin}': distance and size of wheels must be positive", plugin=self.place.name)
+                phrase(
+                    "plugin '{plugin}': the separation and the diameter of the wheels must be positive",
+                    plugin=self.place.name,
+                )
             )
         self.require_free_model()
         corners = (

@@ -77,7 +77,9 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         parameters = self.parameters
         if parameters.motor_type != "velocity":
             raise self.parameter_error(
-                phrase("plugin '{plugin}': <motorType> is 'velocity' here and nothing else", plugin=self.place.name)
+                phrase(
+                    "plugin '{plugin}': <motorType> must be 'velocity', the only supported type", plugin=self.place.name
+                )
             )
         self._link = self.link(parameters.link_name)
         joint = self.joint(parameters.joint_name)

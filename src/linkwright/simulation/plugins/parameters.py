@@ -107,7 +107,7 @@ def _read(known: Field[Any], kind: Any, written: list[Element], findings: list[D
             values.append(convert(text))
         except ValueError:
             message = phrase("'{text}' is not a valid value of '{name}'", text=text, name=known.name)
-            findings.append(_warning("SIM131", message, child, phrase("its default is used")))
+            findings.append(_warning("SIM131", message, child, phrase("the default is used")))
     if not values:
         return None
     return tuple(values) if many else values[0]
@@ -138,7 +138,7 @@ _CONVERTERS: dict[Any, Callable[[str], Any]] = {
 
 
 def _missing(known: Field[Any], element: Element | None) -> Diagnostic:
-    message = phrase("the plugin lacks '{name}'", name=known.name)
+    message = phrase("the plugin needs the parameter '{name}'", name=known.name)
     if element is None:
         return Diagnostic("SIM132", message)
     return Diagnostic("SIM132", message, span=element.span(), source=element.source)

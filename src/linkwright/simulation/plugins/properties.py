@@ -94,7 +94,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             link = self._entities.link(request.link_name)
             moments = (request.ixx, request.iyy, request.izz, request.ixy, request.ixz, request.iyz)
             if not (0.0 < request.mass < inf and _is_possible(*moments)):
-                raise LinkwrightError(Diagnostic("SIM111", phrase("no body has such a mass or inertia")))
+                raise LinkwrightError(Diagnostic("SIM111", phrase("this mass or inertia is not physically possible")))
             centre = numbers(request.com.position)
             body = self.simulation.scene.spec.body(link)
             body.explicitinertial, body.mass, body.ipos = True, request.mass, list(centre)

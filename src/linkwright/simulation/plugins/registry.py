@@ -93,6 +93,6 @@ def _load(entry: EntryPoint) -> PluginClass:
         found: PluginClass = entry.load()
     except Exception as error:
         message = phrase("the plugin '{name}' cannot be imported", name=entry.name)
-        hint = phrase("'{place}' brings it: {problem}", place=entry.distribution, problem=foreign(error))
+        hint = phrase("'{place}' provides it: {problem}", place=entry.distribution, problem=foreign(error))
         raise LinkwrightError(Diagnostic("SIM136", message, hint=hint)) from error
     return found

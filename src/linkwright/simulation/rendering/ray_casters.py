@@ -49,7 +49,7 @@ class Caster(Protocol):
 class MujocoCaster:
     """Ray casting by MuJoCo, which is exact and slow."""
 
-    way = phrase("rays of MuJoCo, as there is neither EGL nor OSMesa nor embreex: slow")
+    way = phrase("slow ray casting by MuJoCo, because EGL, OSMesa and embreex are not available")
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
@@ -139,7 +139,7 @@ class EmbreeCaster:
         ImportError: embreex is not installed.
     """
 
-    way = phrase("ray casting by Embree, as there is neither EGL nor OSMesa")
+    way = phrase("ray casting by Embree, because neither EGL nor OSMesa is available")
 
     def __init__(self, simulation: Simulation) -> None:
         import embreex  # type: ignore[import-not-found, import-untyped, unused-ignore]  # noqa: F401 - is it installed?

@@ -85,7 +85,7 @@ class BodyWriter:
         mass = inertial.mass
         if not (isfinite(mass) and mass >= _LEAST_MASS):
             message = phrase(
-                "link '{name}' has a mass of {mass} kg, and moves as if it had {least} kg",
+                "link '{name}' has a mass of {mass} kg, but is simulated with {least} kg",
                 name=link.name,
                 mass=mass,
                 least=_LEAST_MASS,
@@ -95,14 +95,16 @@ class BodyWriter:
         if not np.isfinite(tensor).all() or not is_positive_definite(tensor):
             if not (np.isfinite(tensor).all() and not tensor.any()):
                 message = phrase(
-                    "no body has the inertia of link '{name}'; it moves as a ball of its mass", name=link.name
+                    "the inertia of link '{name}' is not physically possible; that of a ball of its mass is used",
+                    name=link.name,
                 )
                 self._warn("SIM111", message, inertial.element or link.element)
             tensor = np.eye(3) * max(mass * 1e-4, _LEAST_INERTIA)
         excess = triangle_excess(tensor)
         if excess > TOLERANCE:
             message = phrase(
-                "no body has the inertia of link '{name}'; it moves with the mean of its moments", name=link.name
+                "the inertia of link '{name}' is not physically possible; the mean of its moments is used",
+                name=link.name,
             )
             self._warn("SIM111", message, inertial.element or link.element)
         elif excess > -_FLAT:  # for flat bodies, a rounding error would make MuJoCo use the mean of the moments

@@ -30,14 +30,14 @@ def count_links(models: Iterable[Model]) -> int:
     """
     count = sum(_links_in(model) for model in models)
     if count > MOST_LINKS:
-        message = phrase("a world of {count} links is more than can be simulated", count=count)
+        message = phrase("the world has {count} links, more than can be simulated", count=count)
         raise LinkwrightError(Diagnostic("SIM105", message, hint=fewer_links()))
     return count
 
 
 def fewer_links() -> Phrase:
     """Return a hint for a world with too many links."""
-    return phrase("at most {most}; shapes that never move may be in one link", most=MOST_LINKS)
+    return phrase("use at most {most} links; put shapes that never move into one link", most=MOST_LINKS)
 
 
 def _links_in(model: Model) -> int:

@@ -330,8 +330,8 @@ def _bounded(path: Path, count: int) -> None:
     """Check that a mesh does not have too many triangles (SIM115)."""
     if count > _MOST_TRIANGLES:
         values = {"path": display_path(path), "count": count, "most": _MOST_TRIANGLES}
-        message = phrase("the mesh '{path}' has {count} triangles, and at most {most} are simulated", **values)
-        hint = phrase("simplify it, or take a simple shape for the collision")
+        message = phrase("the mesh '{path}' has {count} triangles, but at most {most} can be simulated", **values)
+        hint = phrase("simplify it, or use a simple shape for the collision")
         raise LinkwrightError(Diagnostic("SIM115", message, hint=hint))
 
 

@@ -159,7 +159,7 @@ class Scene:
             self.add(model, model.name, frames.pose(model.name))
         except FrameError as error:
             values = {"name": model.name, "frame": error.name}
-            message = phrase("model '{name}' is left out: '{frame}' in it has no place", **values)
+            message = phrase("model '{name}' is left out: the pose of '{frame}' in it is not defined", **values)
             self._warn("SIM116", message, model.element)
 
     def _warn(self, code: str, message: Phrase, element: Element | None) -> None:
@@ -213,7 +213,7 @@ class Scene:
             LinkwrightError: SIM102, there is already a model with this name.
         """
         if name in self.models:
-            raise LinkwrightError(Diagnostic("SIM102", phrase("there is already a model '{name}'", name=name)))
+            raise LinkwrightError(Diagnostic("SIM102", phrase("a model '{name}' already exists", name=name)))
         connected = self._connections.of(structure_of(model, name, pose), name, pose, self.models)
         structure = connected.structure
         added = self.models[name] = SceneModel(name, model, pose, structure, hangs_on=connected.hangs_on)
@@ -478,7 +478,9 @@ class Scene:
                 yield equality
         elif joint.joint.type != "gearbox":
             message = phrase(
-                "joint '{name}' is left out: one of type {kind} closes no loop", name=joint.name, kind=joint.joint.type
+                "joint '{name}' is left out: a joint of type {kind} cannot close a loop",
+                name=joint.name,
+                kind=joint.joint.type,
             )
             self._warn("SIM118", message, joint.joint.element)
 

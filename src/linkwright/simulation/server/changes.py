@@ -107,8 +107,8 @@ def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collectio
             new.append(AddedModel(model, model.name, pose))
         elif model.name not in owned:
             span = None if model.element is None else model.element.span()
-            message = phrase("there is already a model '{name}'", name=model.name)
-            hint = phrase("it was put into the running simulation: delete it there, or give this one another name")
+            message = phrase("a model '{name}' already exists", name=model.name)
+            hint = phrase("it was added to the running simulation: delete it there, or give this model another name")
             raise LinkwrightError(Diagnostic("SIM102", message, span, hint=hint))
         elif before.is_outdated or not alike(_unplaced(before.model), _unplaced(model)):
             renewed.append(AddedModel(model, model.name, pose, here=pose == before.pose))
@@ -176,7 +176,7 @@ def _not_simulated(name: str, error: Exception) -> LinkwrightError:
         return error
     reason: Phrase = foreign(error)
     if isinstance(error, FrameError):
-        reason = phrase("'{name}' has no place", name=error.name)
+        reason = phrase("the pose of '{name}' is not defined", name=error.name)
     message = phrase("model '{name}' cannot be simulated: {reason}", name=name, reason=reason)
     return LinkwrightError(Diagnostic("SIM140", message))
 

@@ -67,9 +67,9 @@ def entity_from(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
             raise LinkwrightError(*_errors(findings))
         message = phrase("there is no model in it")
         hint = (
-            phrase("it is to be URDF, or SDF with a <model>")
+            phrase("it must be URDF, or SDF with a <model>")
             if not sdf.sdf.worlds
-            else phrase("it is a world; only models come into one")
+            else phrase("it is a world, but only models can be added to a world")
         )
         raise LinkwrightError(Diagnostic("SIM142", message, hint=hint))
     return Entity(included.sdf.models[0], findings, tuple(_unknown_shapes(document.root)))

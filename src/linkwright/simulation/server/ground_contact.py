@@ -45,10 +45,10 @@ def touches_nothing(simulation: Simulation, name: str) -> list[Diagnostic]:
         return []
     if not simulation.free_links(name):
         return []
-    message = phrase("no link of '{name}' has a <collision>: it touches nothing, and falls", name=name)
+    message = phrase("no link of '{name}' has a <collision>, so it touches nothing and falls", name=name)
     hint = phrase(
-        "give its links a <collision> each, or run `linkwright drive FILE`, which infers masses and collisions; "
-        "with --write it puts them into the file"
+        "give each of its links a <collision>, or run `linkwright drive FILE`, which infers masses "
+        "and collisions, and writes them to the file with --write"
     )
     element = next((link.element for link in links if link.element is not None), None)
     span, source = (None, None) if element is None else (element.span(), element.source)

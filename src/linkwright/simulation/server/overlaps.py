@@ -54,8 +54,8 @@ def _moving_first(simulation: Simulation, links: Iterable[str]) -> list[str]:
 def _finding(simulation: Simulation, first: str, second: str, depth: float) -> Diagnostic:
     values = {"first": first, "second": second, "depth": f"{depth:.2f}"}
     within = model_of(first) == model_of(second)
-    message: Phrase = phrase("'{first}' begins {depth} m inside '{second}'", **values)
-    hint = phrase("they are pushed apart slowly; move one of them, if that is not meant")
+    message: Phrase = phrase("'{first}' starts {depth} m inside '{second}'", **values)
+    hint = phrase("they are pushed apart slowly; move one of them if this is not intended")
     if within:
         hint = phrase("they are pushed apart slowly; links of a model touch only where <self_collide> is true")
     element = simulation.scene.models[model_of(first)].model.element

@@ -148,7 +148,7 @@ class SimulationServer:
                 moved.
         """
         if name in self.simulation.scene.models:
-            raise LinkwrightError(Diagnostic("SIM102", phrase("there is already a model '{name}'", name=name)))
+            raise LinkwrightError(Diagnostic("SIM102", phrase("a model '{name}' already exists", name=name)))
         self._exchange((), (AddedModel(model, name, pose, namespace),))
         stand_up(self.simulation, name)
         self.report(overlaps(self.simulation, (name,)))
@@ -332,7 +332,7 @@ class SimulationServer:
             self.node.get_logger().info(phrase("plugins and sensors that are not simulated: {names}", names=names))
         for name in new:
             if (other := alternative_to(name)) is not None:
-                self.node.get_logger().info(phrase("use instead of {name}: {other}", name=name, other=other))
+                self.node.get_logger().info(phrase("instead of {name}, use {other}", name=name, other=other))
 
     def _class(self, place: PluginPlace) -> PluginClass | None:
         if place.plugin is None:
@@ -413,7 +413,9 @@ class SimulationServer:
         full_name = described.full_name
         if full_name in self._node_names:
             message = phrase(
-                "plugin '{plugin}' is not loaded: another one is the node '{name}'", plugin=place.name, name=full_name
+                "plugin '{plugin}' is not loaded: another plugin already has the node name '{name}'",
+                plugin=place.name,
+                name=full_name,
             )
             hint = phrase("give it another name, or a namespace in <ros>")
             span, source = (place.element.span(), place.element.source) if place.element else (None, None)

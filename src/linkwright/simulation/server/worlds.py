@@ -73,7 +73,7 @@ def load_world(name: str, text: str | None = None, environment: Mapping[str, str
     if not description.sdf.worlds:
         wrong = [diagnostic for diagnostic in description.diagnostics if has_errors([diagnostic])]
         message = phrase("there is no world in '{path}'", path=str(path))
-        hint = phrase("models are put into one: linkwright sim empty {path}", path=str(path))
+        hint = phrase("add a model to a world: linkwright sim empty {path}", path=str(path))
         raise LinkwrightError(*wrong or [Diagnostic("SIM151", message, hint=hint)])
     world = description.sdf.worlds[0]
     count_links(world.models)

@@ -150,7 +150,7 @@ class JoyNode(SingleNode):
         self._repeat.cancel()
         self._axes, self._buttons = [0.0] * len(self._axes), [0] * len(self._buttons)
         self._send()
-        self._node.get_logger().warning(localized(phrase("the joystick is gone; waiting for it")))
+        self._node.get_logger().warning(localized(phrase("the joystick was disconnected; waiting for it")))
         self._missing = None
         self._retry.reset()
 
@@ -244,10 +244,10 @@ def _within(node: Node, name: str, default: float, least: float, most: float | N
     if isfinite(value) and value >= least and (most is None or value <= most):
         return float(value)
     message = (
-        phrase("parameter '{name}' must be at least {least}, and it is {value}", name=name, least=least, value=value)
+        phrase("parameter '{name}' must be at least {least}, but it is {value}", name=name, least=least, value=value)
         if most is None
         else phrase(
-            "parameter '{name}' must be between {least} and {most}, and it is {value}",
+            "parameter '{name}' must be between {least} and {most}, but it is {value}",
             name=name,
             least=least,
             most=most,

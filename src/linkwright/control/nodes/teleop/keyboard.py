@@ -88,7 +88,7 @@ class TeleopTwistKeyboard(SingleNode):
     def _number(self, name: str, default: float) -> float:
         value: float = self._node.declare_parameter(name, default).value
         if not isfinite(value) or value < 0.0:
-            message = phrase("parameter '{name}' must be 0 or more, and it is {value}", name=name, value=value)
+            message = phrase("parameter '{name}' must be 0 or more, but it is {value}", name=name, value=value)
             raise LinkwrightError(Diagnostic("NODE902", message))
         return value
 
@@ -160,10 +160,10 @@ def _no_terminal() -> LinkwrightError:
     return LinkwrightError(
         Diagnostic(
             "NODE901",
-            phrase("teleop_twist_keyboard needs a terminal, and here it has none"),
+            phrase("teleop_twist_keyboard needs a terminal, but it was started without one"),
             hint=phrase(
-                "start it in a terminal of its own, not from a launch file: ros2 run teleop_twist_keyboard "
-                "teleop_twist_keyboard; over ssh, with ssh -t"
+                "start it in its own terminal, not from a launch file: ros2 run teleop_twist_keyboard "
+                "teleop_twist_keyboard; over ssh, use ssh -t"
             ),
         )
     )

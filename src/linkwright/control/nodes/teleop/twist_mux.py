@@ -82,7 +82,9 @@ class TwistMux(SingleNode):
         kind = TWIST_STAMPED if node.get_parameter("use_stamped").value else TWIST
         self._topics, self._locks = _sources(node, "topics"), _sources(node, "locks")
         if not self._topics:
-            node.get_logger().warning(localized(phrase("no topics.NAME.topic is given, so nothing is forwarded")))
+            node.get_logger().warning(
+                localized(phrase("no parameter topics.NAME.topic is set, so nothing is forwarded"))
+            )
         self._publisher: Publisher[Any] = node.create_publisher(kind, "cmd_vel_out", _DEPTH)
         self._commander = Commander(partial(send_stop, node, self._publisher))
         for source in self._topics:
@@ -157,7 +159,10 @@ def _source(path: str, name: str, given: Mapping[str, Any]) -> _Source:
         raise _wrong(path, phrase("parameter '{name}' must be the name of a topic", name=f"{path}.topic"))
     if isinstance(timeout, bool) or not isinstance(timeout, (int, float)) or not isfinite(timeout) or timeout < 0.0:
         raise _wrong(
-            path, phrase("parameter '{name}' must be seconds, 0 for no time-out, such as 0.5", name=f"{path}.timeout")
+            path,
+            phrase(
+                "parameter '{name}' must be a time in seconds, such as 0.5, or 0 for no timeout", name=f"{path}.timeout"
+            ),
         )
     if isinstance(priority, bool) or not isinstance(priority, int):
         raise _wrong(path, phrase("parameter '{name}' must be an integer, 0 to 255", name=f"{path}.priority"))
@@ -165,5 +170,5 @@ def _source(path: str, name: str, given: Mapping[str, Any]) -> _Source:
 
 
 def _wrong(path: str, message: Phrase) -> LinkwrightError:
-    hint = phrase("'{path}' has three entries: topic, timeout and priority", path=path)
+    hint = phrase("'{path}' must have three entries: topic, timeout and priority", path=path)
     return LinkwrightError(Diagnostic("NODE904", message, hint=hint))

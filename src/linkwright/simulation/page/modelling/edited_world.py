@@ -158,12 +158,12 @@ class EditedWorld:
         if target == self.path and self._content is not None:
             if self.is_outdated:
                 raise EditError(
-                    phrase("'{path}' was changed by another program: save as another file", path=str(target))
+                    phrase("'{path}' was changed by another program: save the world as another file", path=str(target))
                 )
         elif name is None:
-            raise EditError(phrase("this world has no file of its own: name the file to save it as"))
+            raise EditError(phrase("this world has no file yet: name the file to save it to"))
         elif os.path.lexists(target):
-            raise EditError(phrase("there is a file '{path}' already", path=str(target)))
+            raise EditError(phrase("the file '{path}' already exists", path=str(target)))
         content = self._encoded
         try:
             write_whole_file(target, content)

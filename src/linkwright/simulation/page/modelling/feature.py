@@ -260,7 +260,7 @@ class ModellingFeature(PageFeature):
         try:
             await asyncio.wait_for(done, _PATIENCE)
         except asyncio.TimeoutError:
-            refuse(page, phrase("'{name}' did not answer", name=name))
+            refuse(page, phrase("'{name}' did not respond", name=name))
 
 
 def _edit(edited: EditedWorld, message: PageMessage) -> Callable[[], None]:

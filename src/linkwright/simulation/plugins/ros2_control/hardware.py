@@ -110,8 +110,8 @@ class SimulatedSystem(Hardware):
             placed = there.get(sensor.name)
             if placed is None:
                 message = phrase(
-                    "sensor '{name}' of <ros2_control>: the model has no IMU and no force and torque sensor of this "
-                    "name; its states stay as they are",
+                    "sensor '{name}' of <ros2_control> has no IMU or force-torque sensor of this name in the "
+                    "model, so its states do not change",
                     name=sensor.name,
                 )
                 self.logger.warning(message)

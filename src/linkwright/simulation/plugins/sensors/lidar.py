@@ -150,7 +150,7 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
         if kind not in kinds:
             element = self.place.element
             message = phrase("'{type}' is not an output type of a lidar", type=self.parameters.output_type)
-            hint = phrase("it is sensor_msgs/LaserScan, PointCloud2, PointCloud or Range")
+            hint = phrase("use sensor_msgs/LaserScan, PointCloud2, PointCloud or Range")
             span, source = (element.span(), element.source) if element is not None else (None, None)
             raise LinkwrightError(Diagnostic("SIM137", message, span, hint=hint, source=source))
         self._frame = self.classic_frame()
