@@ -144,8 +144,8 @@ def test_there_is_a_most_of_words():
 @pytest.mark.parametrize(
     ("change", "why"),
     [
-        (lambda document: document.update(format="words"), "does not say"),
-        (lambda document: document.update(version=2), "version '2', and 1 is read"),
+        (lambda document: document.update(format="words"), "is not marked"),
+        (lambda document: document.update(version=2), "version '2', but only 1 is supported"),
         (lambda document: document.update(words={}), "no list of words"),
         (lambda document: document["words"].append({"takes": []}), "word 3 has no name"),
         (lambda document: document["words"].append(document["words"][0]), "word 3 has no name, or the name of"),
@@ -153,7 +153,7 @@ def test_there_is_a_most_of_words():
         (lambda document: document["words"][1]["takes"][0].update(frames="!"), "'stop' cannot be decoded"),
         (lambda document: document["words"][1]["takes"][0].update(frames=7), "'stop' cannot be decoded"),
         (lambda document: document["words"][1]["takes"][0].pop("noise"), "'stop' cannot be decoded"),
-        (lambda document: document["words"][1]["takes"][0].update(frames="AAAA"), "not the right length"),
+        (lambda document: document["words"][1]["takes"][0].update(frames="AAAA"), "the wrong length"),
     ],
 )
 def test_a_damaged_file_is_one_error_that_says_what_and_how_to_mend_it(tmp_path, change, why):

@@ -87,11 +87,11 @@ BAD = {
     ),
     "SWEEP103  there is no scenario in 'squares.py'": HEAD,
     "SWEEP103 squares.py:7:1 there are 2 scenarios in 'squares.py'": f"{SQUARES}\n@scenario()\ndef other(): ...\n",
-    "SWEEP104 squares.py:2:1 the function 'f' does not take 'm'": f"{HEAD}@scenario(m=[1])\ndef f(): ...\n",
+    "SWEEP104 squares.py:2:1 the function 'f' does not accept 'm'": f"{HEAD}@scenario(m=[1])\ndef f(): ...\n",
     "SWEEP104 squares.py:2:1 the function 'f' needs 'm', which @scenario does not set": (
         f"{HEAD}@scenario()\ndef f(m, k=1, seed=0): ...\n"
     ),
-    "SWEEP104 squares.py:2:1 a parameter cannot be called 'row': that is a column already": (
+    "SWEEP104 squares.py:2:1 a parameter cannot be named 'row': the table already has this column": (
         f"{HEAD}@scenario(row=[1])\ndef f(row): ...\n"
     ),
     "SWEEP105 squares.py:2:1 parameter 'm' has no values": f"{HEAD}@scenario(m=[])\ndef f(m): ...\n",
@@ -104,7 +104,7 @@ BAD = {
     "SWEEP105 squares.py:2:1 parameter 'm': the numbers of its distribution must be finite": (
         f"{HEAD}@scenario(m=Uniform(0, float('inf')))\ndef f(m): ...\n"
     ),
-    "SWEEP105 squares.py:2:1 the seeds must be a positive number of seeds, or a list of integers from 0 on": (
+    "SWEEP105 squares.py:2:1 the seeds must be a positive number of seeds, or a list of integers of at least 0": (
         f"{HEAD}@scenario(seeds=0)\ndef f(): ...\n"
     ),
 }

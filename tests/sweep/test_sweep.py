@@ -87,7 +87,7 @@ def test_what_was_interrupted_goes_on_and_ends_with_the_same_bytes(tmp_path):
     swept(whole)
     table, _ = swept(interrupted, until=3)
     assert table.columns["row"] == [4, 5, 6]
-    assert "3 are still to be done" in (interrupted / "out.html").read_text()
+    assert "3 runs remain" in (interrupted / "out.html").read_text()
     journal = interrupted / "out.csv.unfinished"
     with journal.open("a") as file:
         file.write('{"row": 3, "resul')  # the power went

@@ -51,7 +51,7 @@ def unpacked_depth(message: Any) -> RawImage:
         )
     data = np.frombuffer(message.data, np.uint8)
     if data.size <= _HEADER.size:
-        raise BadImageError(phrase("The depth image has {size} bytes, no more than its header", size=data.size))
+        raise BadImageError(phrase("The depth image has {size} bytes, and no data after its header", size=data.size))
     _, first, second = _HEADER.unpack(data[: _HEADER.size].tobytes())
     rest = data[_HEADER.size :]
     numbers = _of_png(rest) if packing == "png" else _of_rvl(rest)
@@ -69,12 +69,12 @@ def _of_png(data: NDArray[np.uint8]) -> NDArray[np.uint16]:
 
 def _of_rvl(data: NDArray[np.uint8]) -> NDArray[np.uint16]:
     if data.size < _RVL_SIZE.size:
-        raise BadImageError(phrase("The RVL depth image ends before its size"))
+        raise BadImageError(phrase("The RVL depth image ends before its size is given"))
     columns, rows = _RVL_SIZE.unpack(data[: _RVL_SIZE.size].tobytes())
     if not 0 < columns * rows <= MOST_PIXELS:
         raise BadImageError(
             phrase(
-                "The header of the RVL depth image gives {columns} x {rows} pixels; 1 to {most} are unpacked",
+                "The header of the RVL depth image declares {columns} x {rows} pixels; 1 to {most} are supported",
                 columns=columns,
                 rows=rows,
                 most=MOST_PIXELS,
@@ -98,7 +98,7 @@ def _depths(numbers: NDArray[np.uint16], first: float, second: float) -> NDArray
     if not (np.isfinite(first) and np.isfinite(second) and first > 0.0):
         raise BadImageError(
             phrase(
-                "The header of the depth image has no scale for its depths: {first:g}, {second:g}",
+                "The header of the depth image has no valid scale of the depths: {first:g}, {second:g}",
                 first=first,
                 second=second,
             )

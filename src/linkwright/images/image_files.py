@@ -74,7 +74,7 @@ def file_pixels(data: NDArray[np.uint8]) -> NDArray[Any]:
         from PIL import JpegImagePlugin, PngImagePlugin
     except ModuleNotFoundError:
         raise BadImageError(
-            phrase("PNG and JPEG files cannot be unpacked: {hint}", hint=install_hint("image"))
+            phrase("PNG and JPEG files cannot be decoded: {hint}", hint=install_hint("image"))
         ) from None
     start = data[:8].tobytes()
     if not start.startswith((_PNG, _JPEG)):
@@ -96,7 +96,7 @@ def file_pixels(data: NDArray[np.uint8]) -> NDArray[Any]:
         ) from None
     raise BadImageError(
         phrase(
-            "The {kind} has {width} x {height} pixels; no more than {most} are unpacked",
+            "The {kind} has {width} x {height} pixels; at most {most} are supported",
             kind=file_kind(start),
             width=width,
             height=height,

@@ -40,7 +40,7 @@ def unpack(entry: ModelEntry, archive: Path, target: Path, origin: str | None = 
                 with closing(_blocks(opened, f"{entry.folder}/{name}")) as blocks:
                     left -= _write(target / name, blocks, left, entry, shown)
     except KeyError as error:
-        raise _unusable(entry, shown, phrase("it lacks '{file}'", file=str(error.args[0]))) from None
+        raise _unusable(entry, shown, phrase("it does not contain '{file}'", file=str(error.args[0]))) from None
     except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError) as error:
         raise _unusable(entry, shown, foreign(error)) from None
 

@@ -100,7 +100,7 @@ def _unloadable(file: Path, error: Exception) -> UnloadableNetworkError:
         return UnloadableNetworkError(phrase("the file is empty"), export)
     if start.startswith(b"version https://git-lfs"):
         pull = phrase("run `git lfs pull`")
-        return UnloadableNetworkError(phrase("it is a pointer of Git LFS, not the file itself"), pull)
+        return UnloadableNetworkError(phrase("it is a Git LFS pointer, not the file itself"), pull)
     if start.lstrip()[:1] == b"<":
         address = phrase("the download address is not that of the file")
         return UnloadableNetworkError(phrase("it is a web page"), address)
@@ -108,11 +108,11 @@ def _unloadable(file: Path, error: Exception) -> UnloadableNetworkError:
         return UnloadableNetworkError(phrase("it is a text file, not an ONNX file"), export)
     reason = reason_of(error)
     if "Protobuf parsing failed" in str(reason):
-        return UnloadableNetworkError(phrase("it is not an ONNX file, or incomplete"), export)
+        return UnloadableNetworkError(phrase("it is not an ONNX file, or it is incomplete"), export)
     if _TOO_NEW.search(str(reason)):
         newer = phrase("it requires a newer onnxruntime: update onnxruntime, or export it with a lower opset")
         return UnloadableNetworkError(reason, newer)
     if _SECOND_FILE.search(str(reason)):
-        beside = phrase("its weights are in a second file, which must be beside it")
+        beside = phrase("its weights are in a second file, which must be in the same folder")
         return UnloadableNetworkError(reason, beside)
     return UnloadableNetworkError(reason, export)

@@ -74,6 +74,6 @@ def model_entry(name: str) -> ModelEntry:
     """
     entry = model_table().get(name)
     if entry is None:
-        hint = did_you_mean(name, model_table()) or phrase("available: {names}", names=joined(model_table()))
+        hint = did_you_mean(name, model_table()) or phrase("choose from {names}", names=joined(model_table()))
         raise LinkwrightError(Diagnostic("MODEL101", phrase("there is no model '{name}'", name=name), hint=hint))
     return entry

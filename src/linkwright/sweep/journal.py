@@ -98,7 +98,7 @@ class Journal:
         lines = self.path.read_text(encoding="utf-8", errors="replace").splitlines()
         entries = [parsed for parsed in map(_parsed, lines) if parsed is not None]
         if not entries or entries[0] != self._head:
-            message = phrase("the unfinished sweep '{path}' has other runs", path=display_path(self.path))
+            message = phrase("the unfinished sweep '{path}' has different runs", path=display_path(self.path))
             hint = phrase("give the same scenario, values and seeds, or remove that file to start again")
             raise LinkwrightError(Diagnostic("SWEEP108", message, hint=hint))
         for entry in entries[1:]:

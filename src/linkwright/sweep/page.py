@@ -54,7 +54,7 @@ def summary(table: Table, name: str, command: str, planned: int) -> str:
     failed = table.failed
     counts: list[Phrase] = [counted("{count} run", "{count} runs", len(table))]
     if len(table) < planned:
-        counts.append(phrase("{count} are still to be done", count=planned - len(table)))
+        counts.append(phrase("{count} runs remain", count=planned - len(table)))
     lead = ", ".join(map(localized, counts))
     if failed:
         lead += f', <span class="bad">{localized(phrase("{count} failed", count=len(failed)))}</span>'
@@ -114,7 +114,7 @@ def _card(title: str, drawing: str) -> str:
 
 
 def _statistics(table: Table, names: Sequence[str]) -> str:
-    heads = [phrase("result"), phrase("runs"), phrase("least"), phrase("mean"), phrase("median"), phrase("greatest")]
+    heads = [phrase("result"), phrase("runs"), phrase("minimum"), phrase("mean"), phrase("median"), phrase("maximum")]
     lines = []
     for name in names:
         values = _of(table, name)

@@ -85,7 +85,7 @@ def _connected(path: Path, address: str) -> Any:
     except (ConnectionError, ValueError, RuntimeError, OSError) as error:
         reason = foreign(" ".join(str(error).split()))
         message = phrase("there is no Ray cluster at '{address}': {reason}", address=address, reason=reason)
-        hint = phrase("start one with `ray start --head`; its address on that machine is then auto")
+        hint = phrase("start one with `ray start --head`, and use the address auto on that machine")
         raise LinkwrightError(Diagnostic("SWEEP114", message, hint=hint)) from None
     return ray
 

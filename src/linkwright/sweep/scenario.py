@@ -118,7 +118,7 @@ def load_scenario(path: Path) -> Scenario:
             if found
             else phrase("there is no scenario in '{path}'", path=display_path(path))
         )
-        hint = phrase("put @scenario(...) of `linkwright.sweep` above one function")
+        hint = phrase("decorate one function with @scenario(...) of `linkwright.sweep`")
         raise LinkwrightError(Diagnostic("SWEEP103", message, lines[1] if lines else None, hint=hint))
     function = found[0]
     seeds, parameters = getattr(function, _DECLARED)
@@ -152,7 +152,9 @@ def check_values(name: str, values: object, span: Span | None = None) -> None:
         wrong = phrase(
             "a value of parameter '{name}' must be a number, text, True or False, not {kind}", name=name, kind=kind
         )
-    raise LinkwrightError(Diagnostic("SWEEP105", wrong, span, hint=phrase("such as {name}=[0.5, 1.0]", name=name)))
+    raise LinkwrightError(
+        Diagnostic("SWEEP105", wrong, span, hint=phrase("write for example {name}=[0.5, 1.0]", name=name))
+    )
 
 
 def _seeds(seeds: object, span: Span) -> Sequence[int]:
@@ -160,8 +162,10 @@ def _seeds(seeds: object, span: Span) -> Sequence[int]:
         return range(seeds)
     if isinstance(seeds, Sequence) and seeds and all(isinstance(seed, int) and seed >= 0 for seed in seeds):
         return tuple(seeds)
-    message = phrase("the seeds must be a positive number of seeds, or a list of integers from 0 on")
-    raise LinkwrightError(Diagnostic("SWEEP105", message, span, hint=phrase("such as {name}=100", name="seeds")))
+    message = phrase("the seeds must be a positive number of seeds, or a list of integers of at least 0")
+    raise LinkwrightError(
+        Diagnostic("SWEEP105", message, span, hint=phrase("write for example {name}=100", name="seeds"))
+    )
 
 
 def _check_names(function: Callable[..., object], parameters: Mapping[str, object], span: Span) -> None:
@@ -179,20 +183,22 @@ def _check_names(function: Callable[..., object], parameters: Mapping[str, objec
     missing = [name for name in needed if name not in parameters]
     reserved = [name for name in parameters if name in COLUMNS]
     if reserved:
-        message = phrase("a parameter cannot be called {names}: that is a column already", names=quoted_names(reserved))
+        message = phrase(
+            "a parameter cannot be named {names}: the table already has this column", names=quoted_names(reserved)
+        )
         hint = phrase("give it another name")
     elif unknown:
         message = phrase(
-            "the function '{function}' does not take {names}", function=function.__name__, names=quoted_names(unknown)
+            "the function '{function}' does not accept {names}", function=function.__name__, names=quoted_names(unknown)
         )
-        hint = phrase("each parameter of the scenario must be one of the function")
+        hint = phrase("give the function a parameter for each parameter of the scenario")
     elif missing:
         message = phrase(
             "the function '{function}' needs {names}, which @scenario does not set",
             function=function.__name__,
             names=quoted_names(missing),
         )
-        hint = phrase("such as {name}=[0.5, 1.0]", name=missing[0])
+        hint = phrase("write for example {name}=[0.5, 1.0]", name=missing[0])
     else:
         return
     raise LinkwrightError(Diagnostic("SWEEP104", message, span, hint=hint))

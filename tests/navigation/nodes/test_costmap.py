@@ -255,7 +255,7 @@ async def test_what_is_not_had_is_left_out_with_a_line(scene, start, log):
         },
     )
     logged = [each.text for each in log]
-    assert "there is no layer my_package::Sonar here: the costmap ignores 'sonar'" in logged
+    assert "layers of type my_package::Sonar are not supported: the costmap ignores 'sonar'" in logged
     assert "costmap filters are not supported: the costmap ignores keepout_filter" in logged
     assert "layers that 'plugins' does not name are ignored: obstacle_layer" in logged
     assert not [each for each in logged if "is not a parameter" in each or "are not read" in each]
@@ -267,7 +267,7 @@ async def test_what_is_not_had_is_left_out_with_a_line(scene, start, log):
         ({"resolution": 0.0}, "parameter 'resolution' of 'global_costmap' cannot be '0.0'"),
         ({"footprint": "[[1, 2]]"}, "'[[1, 2]]' has 1"),
         ({"plugins": ["mine"]}, "parameter 'mine.plugin' of 'global_costmap' is not given"),
-        ({"obstacle_layer.scan.data_type": "Image"}, "it is one of LaserScan, PointCloud2"),
+        ({"obstacle_layer.scan.data_type": "Image"}, "choose from LaserScan, PointCloud2"),
     ],
 )
 async def test_what_cannot_be_is_told(scene, start, log, given, why):

@@ -169,7 +169,7 @@ async def test_without_all_that_is_needed_nothing_is_published(test):
 @pytest.mark.parametrize(
     ("parameters", "text"),
     [
-        ({"datum": [1.0, 2.0]}, "parameter 'datum' must have 3 values and has 2"),
+        ({"datum": [1.0, 2.0]}, "parameter 'datum' must have 3 values, but has 2"),
         ({"datum": [200.0, 2.0, 0.0]}, "parameter 'datum' of 'navsat_transform_node' cannot be '[200.0, 2.0, 0.0]'"),
         ({"frequency": 0.0}, "parameter 'frequency' of 'navsat_transform_node' cannot be '0.0'"),
     ],

@@ -180,7 +180,7 @@ async def test_it_is_a_managed_node(line, stage):
     [
         ({"max_decel": [2.5, 0.0, 3.2]}, "max_decel must not be positive"),
         ({"max_velocity": [0.5]}, "3 entries"),
-        ({"feedback": "SOMETIMES"}, "OPEN_LOOP or CLOSED_LOOP, and it is 'SOMETIMES'"),
+        ({"feedback": "SOMETIMES"}, "OPEN_LOOP or CLOSED_LOOP, but it is 'SOMETIMES'"),
         ({"smoothing_frequency": 0.0}, "smoothing_frequency must be more than 0"),
     ],
 )

@@ -99,8 +99,8 @@ async def test_a_box_waits_for_the_place_of_the_laser(test):
     ("parameters", "text"),
     [
         ({"type": "laser_filters/LaserScanRangFilter"}, "there is no filter 'laser_filters/LaserScanRangFilter'"),
-        ({"name": "x"}, "'filter1.type' is not given"),
-        ({**BOX, "params": {"box_frame": "base_link"}}, "'filter1.params.min_x' is not given"),
+        ({"name": "x"}, "parameter 'filter1.type' is not set"),
+        ({**BOX, "params": {"box_frame": "base_link"}}, "parameter 'filter1.params.min_x' is not set"),
         ({**RANGE, "params": {"lower_threshold": "near"}}, "'filter1.params.lower_threshold' cannot be 'near'"),
     ],
 )

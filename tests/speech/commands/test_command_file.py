@@ -141,12 +141,12 @@ def test_the_phrase_that_says_more_of_itself_is_meant() -> None:
     [
         ("places: {}\n", "VOICE302", 1, 1, "'commands' is missing"),
         ("places: {}\ncommands: {}\n", "VOICE302", 2, 11, "there is no command in 'commands'"),
-        ("- a\n", "VOICE302", 1, 1, "must be keys and values"),
+        ("- a\n", "VOICE302", 1, 1, "must be a mapping of keys to values"),
         ("commands: [\n", "VOICE302", 2, 1, "not valid YAML"),
         ("command: {}\n", "VOICE302", 1, 1, "has no 'command'"),
-        ("commands:\n  a: {phrases: go}\n", "VOICE302", 2, 6, "does nothing"),
+        ("commands:\n  a: {phrases: go}\n", "VOICE302", 2, 6, "has no action"),
         ("commands:\n  a: {stop: true}\n", "VOICE302", 2, 6, "has no 'phrases'"),
-        ("commands:\n  a: {phrases: go, stop: true, drive: {x: 1}}\n", "VOICE302", 2, 6, "two things"),
+        ("commands:\n  a: {phrases: go, stop: true, drive: {x: 1}}\n", "VOICE302", 2, 6, "two actions"),
         (
             "commands:\n  a: {phrases: go, stop: true}\n  a: {phrases: to, stop: true}\n",
             "VOICE302",
@@ -167,7 +167,7 @@ def test_the_phrase_that_says_more_of_itself_is_meant() -> None:
         ),
         ("commands:\n  a: {phrases: 'go {metres}', drive: {x: 1}}\n", "VOICE303", 2, 16, "no slot 'metres'"),
         ("commands:\n  a: {phrases: 'go [ahead', drive: {x: 1}}\n", "VOICE303", 2, 16, "not closed"),
-        ("commands:\n  a: {phrases: '{distance}', drive: {x: 1}}\n", "VOICE303", 2, 16, "outside of slots"),
+        ("commands:\n  a: {phrases: '{distance}', drive: {x: 1}}\n", "VOICE303", 2, 16, "outside the slots"),
         ("commands:\n  a: {phrases: go, stop: true}\n  b: {phrases: Go, drive: {x: 1}}\n", "VOICE304", 3, 16, "'a'"),
         ("commands:\n  a: {phrases: go, publish: {topic: /a, type: std_msgs/msg/Strin}}\n", "VOICE305", 2, 47, "Strin"),
         (
@@ -183,7 +183,7 @@ def test_the_phrase_that_says_more_of_itself_is_meant() -> None:
         ),
         (
             "commands:\n  a: {phrases: 'a {number} {angle} {distance} {speed} {duration}', drive: {x: 1}}\n",
-            *("VOICE306", 1, 1, "phrases can be said"),
+            *("VOICE306", 1, 1, "phrases are possible"),
         ),
     ],
 )

@@ -12,9 +12,9 @@ from tests.waiting import eventually
 @pytest.mark.parametrize(
     ("language", "nearest", "answer"),
     [
-        ("en", "", "I heard something that is none of the commands"),
+        ("en", "", "I heard something that is not a command"),
         ("zh", "", "我听到了声音，但不是任何命令"),
-        ("en", "turn left", "I heard something that is none of the commands: 'turn left' is the nearest"),
+        ("en", "turn left", "I heard something that is not a command: 'turn left' is the nearest"),
         ("zh", "左转", "我听到了声音，但不是任何命令，最接近的是“左转”"),
     ],
 )

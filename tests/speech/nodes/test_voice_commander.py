@@ -127,7 +127,7 @@ async def test_who_is_stuck_stops_and_says_so(stage, talk):
     await robot.type("forward one metre")
     await stage.clock.advance(30.0)
     assert robot.speed == (0.0, 0.0, 0.0)
-    assert robot.said["response"][-1] == "I am stuck, and stop"
+    assert robot.said["response"][-1] == "I am stuck, so I stop"
 
 
 async def test_faster_slower_and_a_speed(talk):
@@ -310,7 +310,7 @@ async def test_it_stops_when_the_microphone_is_gone(engine, stage, talk):
     robot.mouth.destroy_node()
     await stage.clock.advance(1.0)
     assert robot.speed == (0.0, 0.0, 0.0)
-    assert robot.said["response"][-1] == "the audio source is gone, so I stop"
+    assert robot.said["response"][-1] == "the audio source stopped, so I stop"
 
 
 async def test_an_engine_that_is_not_there_ends_the_node(engine, talk, logged):
@@ -352,7 +352,7 @@ async def test_a_question_is_answered_first(stage, talk, tmp_path, answer, count
         await robot.type(answer)
     else:
         await stage.clock.advance(11.0)
-        assert robot.said["response"][-1] == "there is no answer, so I leave it"
+        assert robot.said["response"][-1] == "I received no answer, so I will not do it"
     assert len(reset) == count
     await robot.type("yes")
     assert len(reset) == count
@@ -532,4 +532,4 @@ async def test_a_file_of_commands_that_is_wrong_ends_it(talk, tmp_path, logged):
     with pytest.raises(LinkwrightError) as caught:
         talk(commands_file=commands(tmp_path, "commands: {a: {phrases: b}}"))
     assert caught.value.diagnostics[0].code == "VOICE302"
-    assert logged("FATAL") == ["the command 'a' does nothing"]
+    assert logged("FATAL") == ["the command 'a' has no action"]

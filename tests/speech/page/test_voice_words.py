@@ -82,7 +82,7 @@ async def test_words_are_renamed_and_removed_and_keep_their_place():
         await client.send("rename_word", name="back", new_name="forward")
         while message["problem"] is None:
             message = await client.until("voice_words")
-        assert message["problem"] == "a word cannot be called 'forward': there is a word of that name"
+        assert message["problem"] == "a word cannot be named 'forward': a word with this name already exists"
         await client.send("remove_word", name="back")
         message = await client.until("voice_words", problem=None)
         assert [word["name"] for word in message["words"]] == ["停止", "forward"]

@@ -155,7 +155,7 @@ def test_masks_are_left_out_and_that_is_said(tmp_path, image, task):
     output, *place = by_hand(path, image, 96, 128)
     detector = opened(path)
     check(detector.detect(image, LIMITS), slowly(output[0].T, 3, LIMITS), image, *place)
-    assert [str(note) for note in detector.notes] == ["of 'seg.onnx' the boxes are taken; masks are left out"]
+    assert [str(note) for note in detector.notes] == ["only the boxes of 'seg.onnx' are used; masks are left out"]
 
 
 def test_key_points_are_left_out_and_that_is_said(tmp_path, image):
@@ -164,7 +164,7 @@ def test_key_points_are_left_out_and_that_is_said(tmp_path, image):
     output, *_ = by_hand(path, image, 96, 128)
     detector = opened(path)
     assert len(detector.detect(image, LIMITS)) == len(slowly(output[0].T, 1, LIMITS))
-    assert "key points are left out" in str(detector.notes[0])
+    assert "keypoints are left out" in str(detector.notes[0])
 
 
 def test_only_classes_that_are_wanted_and_no_more_than_that(tmp_path, image):
@@ -191,7 +191,7 @@ def test_labels_of_a_file_go_before_those_of_the_network(tmp_path, image):
 def test_classes_without_names_are_numbered(tmp_path):
     detector = opened(columns(tmp_path / "v8.onnx"))
     assert detector.names == ("0", "1", "2")
-    assert "give a file of labels" in str(detector.notes[0])
+    assert "give a labels file" in str(detector.notes[0])
 
 
 def test_a_device_that_is_not_there_is_told_of(tmp_path):
@@ -239,10 +239,10 @@ def test_a_corrupt_file(tmp_path):
     ("content", "reason"),
     [
         (b"", "the file is empty"),
-        (b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n", "it is a pointer of Git LFS"),
+        (b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n", "it is a Git LFS pointer"),
         (b"\n<!DOCTYPE html><html></html>", "it is a web page"),
         (b"not a network\n", "it is a text file, not an ONNX file"),
-        (bytes(1000), "it is not an ONNX file, or incomplete"),
+        (bytes(1000), "it is not an ONNX file, or it is incomplete"),
     ],
 )
 def test_files_that_are_no_networks_are_told_apart(tmp_path, content, reason):
@@ -307,7 +307,7 @@ def test_where_in_labels_the_mistake_is(tmp_path):
     labels.write_text("names:\n  0: ball\n  1: [box\n")
     _, message, hint = refused(columns(tmp_path / "v8.onnx"), labels=labels)
     assert "line 4, column 1" in message
-    assert "a name in each line" in hint
+    assert "one name per line" in hint
 
 
 def test_a_file_that_is_not_there_and_names_that_are_wrong(tmp_path):
@@ -368,11 +368,11 @@ def test_rows_that_look_like_those_of_yolov5_and_are_none(tmp_path, rows, metada
 def test_names_that_do_not_fit(tmp_path):
     path = columns(tmp_path / "v8.onnx", 5, metadata=NAMES)
     code, message, _ = refused(path)
-    assert (code, message) == ("VISION107", "the network in 'v8.onnx' has 5 classes, and its metadata name 3")
+    assert (code, message) == ("VISION107", "the network in 'v8.onnx' has 5 classes, but its metadata name 3")
     labels = tmp_path / "labels.txt"
     labels.write_text("one\ntwo\n")
     code, message, _ = refused(columns(tmp_path / "v8.onnx", metadata=NAMES), labels=labels)
-    assert (code, message) == ("VISION107", f"the network in 'v8.onnx' has 3 classes, and '{labels}' names 2")
+    assert (code, message) == ("VISION107", f"the network in 'v8.onnx' has 3 classes, but '{labels}' names 2")
     assert refused(columns(tmp_path / "v8.onnx"), labels=labels)[0] == "VISION107"
 
 

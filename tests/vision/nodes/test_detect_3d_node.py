@@ -132,7 +132,7 @@ def test_nothing_is_found_and_it_is_said(test):
 def test_what_is_missing_is_named(test):
     _, found, _ = start(test)
     boxes(test, BOX)
-    assert warnings(test) == ["detections have no place: no camera_info has arrived"]
+    assert warnings(test) == ["the positions of detections are unknown: no camera_info has arrived"]
     camera(test, "/camera_info")
     test.advance(6.0)
     boxes(test, BOX)

@@ -339,7 +339,7 @@ async def test_qos_that_does_not_fit_is_told(test, start, warnings):
     test.node.create_publisher(get_message(IMAGE), "/yolo/image_raw", offered)
     await test.advance(11.0)
     assert warnings()[-2:] == [
-        "no images arrive: '/yolo/image_raw' is published best effort, and this node requests reliable",
+        "no images arrive: '/yolo/image_raw' is published best effort, but this node requests reliable",
         "set 'image_reliability' to 2",
     ]
 
@@ -356,7 +356,7 @@ async def test_a_camera_that_stops_and_goes_on_is_told_of_and_the_next_time_late
     assert warnings() == [stopped(5)]
     await seen(test, recording, "/yolo/image_raw", image())
     await test.advance(5.0)
-    assert [record.text for record in test.log][-1] == "images arrive now"
+    assert [record.text for record in test.log][-1] == "images are arriving"
     await test.advance(7.0)
     assert warnings() == [stopped(5)]
     await test.advance(5.0)

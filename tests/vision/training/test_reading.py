@@ -76,7 +76,7 @@ def test_the_yaml_file_itself_may_be_named(shapes):
         ("train: images/train\n", "'names' does not name the classes"),
         ("train: images/train\nnames: {0: a, 2: b}\n", "'names' does not name the classes"),
         ("names: [a]\n", "neither 'train' nor 'val'"),
-        ("- 1\n", "does not hold names and values"),
+        ("- 1\n", "not a mapping of names to values"),
         ("names: [a\n", "is not a dataset"),
     ],
 )
@@ -89,7 +89,7 @@ def test_what_is_no_dataset_is_said(tmp_path, content, message):
 
 def test_folders_that_are_not_there_or_empty_are_no_datasets(tmp_path):
     assert "does not exist" in str(problem(open_dataset, tmp_path / "none").message)
-    assert "there is no YAML file in it" in str(problem(open_dataset, tmp_path).message)
+    assert "it contains no YAML file" in str(problem(open_dataset, tmp_path).message)
 
 
 def test_a_part_that_is_not_there_is_said(shapes):
@@ -111,8 +111,8 @@ def test_a_part_without_images_is_said(shapes):
         ("0 0.5 0.5 0.1 b", "five numbers"),
         ("2 0.5 0.5 0.1 0.1", "the class 2 is not one of the 2"),
         ("0.5 0.5 0.5 0.1 0.1", "the class 0.5 is not one of the 2"),
-        ("0 50 0.5 0.1 0.1", "shares of the image"),
-        ("0 nan 0.5 0.1 0.1", "shares of the image"),
+        ("0 50 0.5 0.1 0.1", "fractions of the image"),
+        ("0 nan 0.5 0.1 0.1", "fractions of the image"),
     ],
 )
 def test_a_label_that_cannot_be_is_said_with_its_place(shapes, line, message):

@@ -44,7 +44,7 @@ def read_footprint(text: str) -> Footprint:
     if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
         raise BadFootprintError(f"'{text}' is not a list of points such as [[x1, y1], [x2, y2], [x3, y3]]")
     if len(corners) < _LEAST_CORNERS:
-        raise BadFootprintError(f"a footprint has three corners or more, and '{text}' has {len(corners)}")
+        raise BadFootprintError(f"a footprint needs at least three corners, but '{text}' has {len(corners)}")
     return corners
 
 

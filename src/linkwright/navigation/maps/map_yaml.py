@@ -123,7 +123,7 @@ class _Reader:
         node = self._nodes["resolution"]
         value = self._number(node, "resolution")
         if not value > 0.0:
-            raise self._error(phrase("'resolution' must be more than 0: it is metres for each pixel"), node)
+            raise self._error(phrase("'resolution', in metres per pixel, must be more than 0"), node)
         return value
 
     def _origin(self) -> list[float]:
@@ -131,7 +131,7 @@ class _Reader:
         if not isinstance(node, yaml.SequenceNode):
             raise self._error(phrase("'origin' must be a list of x, y and yaw"), node)
         if len(node.value) != 3:
-            message = phrase("'origin' must have 3 values (x, y, yaw) and has {count}", count=len(node.value))
+            message = phrase("'origin' must have 3 values (x, y, yaw), but has {count}", count=len(node.value))
             raise self._error(message, node)
         return [self._number(number, "origin") for number in node.value]
 
@@ -139,7 +139,7 @@ class _Reader:
         node = self._nodes[key]
         value = self._number(node, key)
         if not 0.0 <= value <= 1.0:
-            hint = phrase("65 per cent is 0.65") if value > 1.0 else None
+            hint = phrase("write 0.65 for 65 per cent") if value > 1.0 else None
             raise self._error(phrase("'{key}' must be between 0 and 1", key=key), node, hint)
         return value
 

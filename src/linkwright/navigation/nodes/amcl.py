@@ -337,7 +337,7 @@ class AmclNode(ManagedNode):
 
     def _on_global_localization(self, _request: Any, response: Any) -> Any:
         if self._map is None:
-            self.get_logger().error("There is no map yet, on which the robot could be anywhere")
+            self.get_logger().error("There is no map yet, so the robot cannot be placed on it")
             return response
         self.get_logger().info("Initializing with uniform distribution")
         self._filter.begin(self._map.random_poses(self._settings.filter.max_particles, self._filter.random))

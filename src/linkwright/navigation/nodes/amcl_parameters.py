@@ -143,7 +143,7 @@ def _motion(node: Node, name: str) -> MotionModel:
     motion = _MOTIONS.get(name)
     if motion is None:
         node.get_logger().warning(
-            f"robot_model_type '{name}' is none of {', '.join(_MOTIONS)}; particles move as for a differential drive"
+            f"robot_model_type '{name}' is not one of {', '.join(_MOTIONS)}; particles move as for a differential drive"
         )
         return differential
     return motion

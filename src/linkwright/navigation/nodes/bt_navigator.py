@@ -104,14 +104,14 @@ class NavigatorNode(StepNode):
     def _may_begin(self, which: str, goal: Any) -> bool:
         poses = [goal.pose] if which == "pose" else list(goal.poses)
         if not poses:
-            self.get_logger().error("there are no poses to go to: the goal is rejected")
+            self.get_logger().error("the goal has no poses, so it is rejected")
             return False
         if goal.behavior_tree and not _is_usual(goal.behavior_tree):
             self._log_ignored_tree(goal.behavior_tree)
         return True
 
     def _log_ignored_tree(self, path: str) -> None:
-        self.get_logger().warning(f"behaviour trees are not read: the usual one runs instead of {path}")
+        self.get_logger().warning(f"behaviour trees are not supported: the default navigation runs instead of {path}")
 
     def _start(self, which: str, goal: Any) -> None:
         """Start with a goal and abort a goal of the other action.
@@ -296,7 +296,7 @@ class NavigatorNode(StepNode):
     def _on_goal_pose(self, message: Any) -> None:
         """Navigate to a pose sent by RViz's 2D Goal Pose."""
         if not self.is_active:
-            self.get_logger().warning("a goal came on goal_pose, and this node is not active")
+            self.get_logger().warning("a goal was received on goal_pose, but this node is not active")
             return
         self._own.send_goal_async(get_action("nav2_msgs/action/NavigateToPose").Goal(pose=message))
 

@@ -316,7 +316,9 @@ class CostmapNode(ManagedNode):
     def _on_footprint(self, message: Any) -> None:
         corners = np.array([(point.x, point.y) for point in message.points], np.float64).reshape(-1, 2)
         if len(corners) < _LEAST_CORNERS or not np.isfinite(corners).all():
-            self.get_logger().error(f"a footprint has three corners or more, and one came with {len(corners)}")
+            self.get_logger().error(
+                f"a footprint needs at least three corners, but the received one has {len(corners)}"
+            )
             return
         self.layered.footprint = corners
 

@@ -88,7 +88,7 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
         maker = makers.get(kind.removeprefix("nav2_costmap_2d::"))
         if maker is None:
             declare_unread(node, name)
-            node.get_logger().warning(f"there is no layer {kind} here: the costmap ignores '{name}'")
+            node.get_logger().warning(f"layers of type {kind} are not supported: the costmap ignores '{name}'")
             continue
         node.get_logger().info(f'Using plugin "{name}"')
         layer = maker(shared, name)

@@ -237,4 +237,4 @@ class MapTopic:
         if cells.size != message.width * message.height or not self._layer.update_map(
             message.y, message.x, cells.reshape(message.height, message.width)
         ):
-            self._node.get_logger().warning("an update of the map does not fit into it and is left out")
+            self._node.get_logger().warning("an update does not fit into the map, so it is ignored")

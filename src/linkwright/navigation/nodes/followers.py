@@ -52,9 +52,9 @@ def make_follower(node: Node, plugin: str) -> Follower:
     unread = declare_unread(node, plugin)
     if kind in (DWB, MPPI):
         ignored = f"; without effect here: {', '.join(unread)}" if unread else ""
-        logger.info(f"{plugin}: our own follower that samples velocities replaces {kind}{ignored}")
+        logger.info(f"{plugin}: Linkwright's velocity-sampling follower replaces {kind}{ignored}")
     elif kind != PURE_PURSUIT:
-        logger.warning(f"{plugin}: there is no {kind} here; regulated pure pursuit takes its place")
+        logger.warning(f"{plugin}: {kind} is not supported; regulated pure pursuit replaces it")
     elif unread:
         logger.info(f"{plugin}: without effect here: {', '.join(unread)}")
     return follower

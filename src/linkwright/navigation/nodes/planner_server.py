@@ -106,8 +106,8 @@ class PlannerNode(ManagedNode):
         if kind != _NAVFN:
             declare_unread(self, name)
             self.get_logger().warning(
-                f"there is no {kind} here: plans of '{name}' go the way of NavFn, in all directions and with no regard "
-                "to how tightly a robot can turn"
+                f"{kind} is not supported: plans of '{name}' are computed like those of NavFn, in all directions and "
+                "without regard to the turning radius"
             )
         self.get_logger().info(f"Created global planner plugin {name} of type {kind}")
         return settings

@@ -64,7 +64,7 @@ class SmootherNode(ManagedNode):
         declared(self, Smoothing, name)
         declare_unread(self, name)
         if kind != _SIMPLE:
-            self.get_logger().warning(f"there is no {kind} here: '{name}' smooths as {_SIMPLE} does")
+            self.get_logger().warning(f"{kind} is not supported: '{name}' smooths as {_SIMPLE} does")
         self.get_logger().info(f"Created smoother : {name} of type {kind}")
 
     def _on_costmap(self, message: Any) -> None:

@@ -138,7 +138,7 @@ class _ManagedSmoother(ManagedNode):
             return phrase("smoothing_frequency must be more than 0")
         if value("feedback") not in ("OPEN_LOOP", "CLOSED_LOOP"):
             return phrase(
-                "feedback must be OPEN_LOOP or CLOSED_LOOP, and it is '{feedback}'", feedback=value("feedback")
+                "feedback must be OPEN_LOOP or CLOSED_LOOP, but it is '{feedback}'", feedback=value("feedback")
             )
         lengths = {len(value(name)) for name in _LIMITS}
         if lengths not in ({len(_PLANAR)}, {len(_AXES)}):

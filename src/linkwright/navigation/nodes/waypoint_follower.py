@@ -44,7 +44,7 @@ class WaypointNode(StepNode):
             is_on = bool(value_of(self, f"{task}.enabled", True))
             self._pause = int(value_of(self, f"{task}.waypoint_pause_duration", 0)) / 1000.0 if is_on else 0.0
         else:
-            self.get_logger().warning(f"{task}: there is no {kind} here; nothing is done at waypoints")
+            self.get_logger().warning(f"{task}: {kind} is not supported; no task runs at waypoints")
         self._navigation = self.register(ActionClient(self, "nav2_msgs/action/NavigateToPose", "navigate_to_pose"))
         kind = "nav2_msgs/action/FollowWaypoints"
         self._waypoints = self.register(GoalServer(self, kind, "follow_waypoints", self._start))

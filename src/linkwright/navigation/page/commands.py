@@ -201,12 +201,14 @@ class _Watch:
             number, managers = _COMMANDS[command]
             there = [name for name in managers if self._manage[name].service_is_ready()]
             if not there:
-                problem = phrase("there is no lifecycle manager of nav2")
+                problem = phrase("no lifecycle manager of nav2 is running")
             for name in there:
                 client = self._manage[name]
                 answer = await self._call(client, command=number)
                 if answer is None or not answer.success:
-                    problem = phrase("lifecycle_manager_{name} could not do that; its log has the reason", name=name)
+                    problem = phrase(
+                        "lifecycle_manager_{name} could not do this; see its log for the reason", name=name
+                    )
                     break
         self._change(busy=False, problem="" if problem is None else str(problem))
 
@@ -225,7 +227,7 @@ class _Watch:
             return phrase("there is no action '{name}'", name="navigate_to_pose")
         answer = await self._call(self._cancel)
         if answer is None:
-            return phrase("the goal could not be cancelled: there is no answer")
+            return phrase("the goal could not be cancelled: the server does not respond")
         if answer.return_code != 0:
             return phrase("the goal could not be cancelled: code {code}", code=answer.return_code)
         return None

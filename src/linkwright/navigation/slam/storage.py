@@ -77,7 +77,9 @@ def load_graph(mapper: Mapper, path: Path) -> None:
     except OSError as error:
         raise _unreadable(path, foreign(error.strerror or error)) from None
     if b"serialization::archive" in data[:64]:
-        raise _unreadable(path, phrase("it was written by slam_toolbox itself, in a form that only its own code reads"))
+        raise _unreadable(
+            path, phrase("it was written by slam_toolbox itself, in a format that only slam_toolbox reads")
+        )
     try:
         graph, scans, odometry = _read(data)
     except (BadZipFile, KeyError, ValueError, IndexError, OSError, EOFError):

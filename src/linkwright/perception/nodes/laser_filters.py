@@ -138,10 +138,10 @@ def _filter(node: Node, prefix: str, tree: dict[str, Any]) -> ScanFilter:
     known = extensions(GROUP)
     kind = tree.get("type")
     if not isinstance(kind, str):
-        raise _wrong("NODE452", phrase("'{name}' is not given", name=f"{prefix}type"), None)
+        raise _wrong("NODE452", phrase("parameter '{name}' is not set", name=f"{prefix}type"), None)
     entry = known.get(kind) or known.get(_PACKAGE + kind)
     if entry is None:
-        hint = did_you_mean(kind, known) or phrase("available: {names}", names=", ".join(sorted(known)))
+        hint = did_you_mean(kind, known) or phrase("choose from {names}", names=", ".join(sorted(known)))
         raise _wrong("NODE451", phrase("there is no filter '{kind}' ({name})", kind=kind, name=f"{prefix}type"), hint)
     table = entry.load()
     hints = get_type_hints(table)
@@ -159,7 +159,7 @@ def _filter(node: Node, prefix: str, tree: dict[str, Any]) -> ScanFilter:
             node.get_logger().warning(message)
     for name, parameter_field in parameters.items():
         if name not in values and parameter_field.default is MISSING and parameter_field.default_factory is MISSING:
-            raise _wrong("NODE452", phrase("'{name}' is not given", name=f"{prefix}params.{name}"), None)
+            raise _wrong("NODE452", phrase("parameter '{name}' is not set", name=f"{prefix}params.{name}"), None)
     made: ScanFilter = table(**values)
     return made
 

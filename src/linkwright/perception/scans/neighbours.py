@@ -30,7 +30,7 @@ class ScanShadowsFilter(ScanFilter):
     def __post_init__(self) -> None:
         if not 0.0 <= self.min_angle <= 90.0 <= self.max_angle <= 180.0:
             message = phrase(
-                "min_angle {least:g} and max_angle {most:g} must be 0 to 90 and 90 to 180 degrees",
+                "min_angle ({least:g}) must be 0 to 90 degrees, and max_angle ({most:g}) 90 to 180 degrees",
                 least=self.min_angle,
                 most=self.max_angle,
             )
@@ -75,7 +75,7 @@ class SpeckleFilter(ScanFilter):
     def __post_init__(self) -> None:
         if self.filter_type not in (0, 1) or self.filter_window < 1:
             message = phrase(
-                "filter_type {kind} and filter_window {window} must be 0 or 1, and 1 or more",
+                "filter_type ({kind}) must be 0 or 1, and filter_window ({window}) must be 1 or more",
                 kind=self.filter_type,
                 window=self.filter_window,
             )

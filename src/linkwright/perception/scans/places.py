@@ -118,8 +118,8 @@ class PolygonFilter(ScanFilter):
     def __post_init__(self) -> None:
         numbers = [float(value) for value in _NUMBER.findall(self.polygon)]
         if len(numbers) < 6 or len(numbers) % 2:
-            message = phrase("polygon '{text}' has no three corners", text=self.polygon)
-            hint = phrase("such as '[[0.2, 0.2], [0.2, -0.2], [-0.2, 0.0]]'")
+            message = phrase("polygon '{text}' has fewer than three corners", text=self.polygon)
+            hint = phrase("write it like '[[0.2, 0.2], [0.2, -0.2], [-0.2, 0.0]]'")
             raise LinkwrightError(Diagnostic("NODE433", message, hint=hint))
         corners = np.array(numbers).reshape(-1, 2)
         # Move each coordinate away from the origin, as costmaps pad footprints.

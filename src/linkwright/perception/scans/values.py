@@ -137,9 +137,9 @@ def _windows(chain: Mapping[str, Any]) -> list[_Window]:
         count = each.get("params", {}).get("number_of_observations", 1)
         if not kind.startswith(_OF_LISTS) or not count >= 1:
             message = phrase(
-                "there is no filter '{kind}' of {count} observations for lists of numbers", kind=kind, count=count
+                "no filter '{kind}' of lists of numbers supports {count} observations", kind=kind, count=count
             )
             known = "filters/MultiChannelMedianFilterFloat, filters/MultiChannelMeanFilterFloat"
-            raise LinkwrightError(Diagnostic("NODE451", message, hint=phrase("it is one of {known}", known=known)))
+            raise LinkwrightError(Diagnostic("NODE451", message, hint=phrase("choose from {known}", known=known)))
         windows.append(_Window(int(count), median="Median" in kind))
     return windows

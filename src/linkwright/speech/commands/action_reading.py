@@ -67,15 +67,15 @@ class ActionReader:
             known = ", ".join(self.KINDS)
             message = (
                 phrase(
-                    "{what} does two things, '{first}' and '{second}'",
+                    "{what} has two actions, '{first}' and '{second}'",
                     what=self._keys.what,
                     first=given[0],
                     second=given[1],
                 )
                 if given
-                else phrase("{what} does nothing", what=self._keys.what)
+                else phrase("{what} has no action", what=self._keys.what)
             )
-            raise self._keys.error(message, None, phrase("it has one of {known}", known=known))
+            raise self._keys.error(message, None, phrase("give it one of {known}", known=known))
         readers: dict[str, Callable[[], Action]] = {
             "drive": self._drive,
             "stop": self._stop,
@@ -101,7 +101,7 @@ class ActionReader:
             raise keys.error(phrase("'drive' has no motion: give 'x', 'y' or 'turn'"))
         if len(limits) > 1:
             message = phrase(
-                "'drive' ends by '{first}' or by '{second}', not by both", first=limits[0], second=limits[1]
+                "'drive' must have either '{first}' or '{second}', not both", first=limits[0], second=limits[1]
             )
             raise keys.error(message)
         if limits == ["distance"] and not (x or y):
@@ -172,9 +172,9 @@ class ActionReader:
         arguments = self._fields(keys, "arguments")
         for name, value in arguments.items():
             if not str(name).isidentifier() or isinstance(value, dict | list):
-                raise keys.error(phrase("arguments are names with texts or numbers"), keys.node("arguments"))
+                raise keys.error(phrase("arguments must be names with strings or numbers"), keys.node("arguments"))
         if file.startswith("-") or package.startswith("-"):
-            raise keys.error(phrase("'launch' names a package and a file"))
+            raise keys.error(phrase("'launch' must name a package and a file"))
         return Launch(package, file, arguments)
 
     def _call(self, keys: Keys, fields: str, find: Callable[[str], Any]) -> tuple[str, str, dict[str, Any]]:
@@ -197,7 +197,7 @@ class ActionReader:
     def _fields(self, keys: Keys, key: str) -> dict[str, Any]:
         values = keys.plain(key)
         if not isinstance(values, dict):
-            raise keys.error(phrase("'{key}' must be keys and values", key=key), keys.node(key))
+            raise keys.error(phrase("'{key}' must be a mapping of keys to values", key=key), keys.node(key))
         for text in _texts_in(values):
             for name in _SLOT.findall(text):
                 self._slot(f"{{{name}}}", keys, key)

@@ -125,7 +125,7 @@ class _Reader:
         samples = {slot: next(iter(self._names[slot].values()), "") if slot in self._names else 1.0 for slot in slots}
         action = ActionReader(self._document, keys, places, samples).read()
         if keys.node("stop") is not None and any(every):
-            raise keys.error(phrase("a stop is said without slots"), keys.node("phrases"))
+            raise keys.error(phrase("a phrase of 'stop' must not have slots"), keys.node("phrases"))
         moves = isinstance(action, MOTIONS) if keys.node("moves") is None else keys.flag("moves")
         response = self._one_text(keys.node("response"))
         return Command(intent, phrases, action, self._question(keys), response, moves)
@@ -169,7 +169,7 @@ class _Reader:
         The node is a text, a list of texts, or a mapping of languages to these.
         """
         if isinstance(node, yaml.MappingNode):
-            keys = Keys(self._document, node, phrase("texts by language"), None)
+            keys = Keys(self._document, node, phrase("strings by language"), None)
             return {language: keys.texts(language) for language in keys.names()}
         what = "texts"
         return {ANY: Keys.of(self._document, what, node).texts(what)}
@@ -180,7 +180,7 @@ class _Reader:
             count = found.phrase_count(language)
             if count > MOST_PHRASES:
                 message = phrase(
-                    "{count} phrases can be said in '{language}', and engines take {most}",
+                    "{count} phrases are possible in '{language}', but engines accept at most {most}",
                     count=count,
                     language=language,
                     most=MOST_PHRASES,

@@ -97,17 +97,17 @@ def templates(text: str, slots: Sequence[str]) -> list[Template]:
     found = []
     for plain in _without_brackets(text):
         if re.search(r"[\[\]{}]", _SLOT.sub("", plain)):
-            raise TemplateError(phrase("a bracket or brace is not closed, or is inside another one"))
+            raise TemplateError(phrase("a bracket or brace is not closed, or is nested in another one"))
         used = tuple(_SLOT.findall(plain))
         for slot in used:
             if slot not in SAYABLE and slot not in slots:
                 known = ", ".join([*SAYABLE, *slots])
-                raise TemplateError(phrase("there is no slot '{slot}'; there are {known}", slot=slot, known=known))
+                raise TemplateError(phrase("there is no slot '{slot}'; the slots are {known}", slot=slot, known=known))
         if len(set(used)) < len(used):
             raise TemplateError(phrase("a slot occurs twice"))
         pieces = tuple(words_of(piece) for piece in _SLOT.split(plain)[::2])
         if not any(pieces):
-            raise TemplateError(phrase("it needs a word outside of slots"))
+            raise TemplateError(phrase("it needs a word outside the slots"))
         found.append(Template(" ".join(plain.split()), pieces, used))
     return found
 

@@ -33,12 +33,12 @@ class Keys:
         self._document, self._node, self.what = document, node, what
         self._values: dict[str, yaml.Node] = {}
         if not isinstance(node, yaml.MappingNode):
-            raise self.error(phrase("{what} must be keys and values", what=what))
+            raise self.error(phrase("{what} must be a mapping of keys to values", what=what))
         names = None if known is None else tuple(known)
         for key, value in node.value:
             name = str(key.value) if isinstance(key, yaml.ScalarNode) else ""
             if names is not None and name not in names:
-                hint = did_you_mean(name, names) or phrase("it has {known}", known=", ".join(names))
+                hint = did_you_mean(name, names) or phrase("the package has {known}", known=", ".join(names))
                 raise self.error(phrase("{what} has no '{key}'", what=what, key=name), key, hint)
             if name in self._values:
                 raise self.error(phrase("'{key}' occurs twice", key=name), key)
@@ -49,7 +49,7 @@ class Keys:
         """Read a mapping with one key."""
         key = yaml.ScalarNode("tag:yaml.org,2002:str", name)
         pair = yaml.MappingNode("tag:yaml.org,2002:map", [(key, value)])
-        return cls(document, pair, phrase("texts by language"), None)
+        return cls(document, pair, phrase("strings by language"), None)
 
     def names(self) -> list[str]:
         """Return the keys that are present."""
@@ -78,7 +78,7 @@ class Keys:
         if node is None and not needed:
             return ""
         if not isinstance(node, yaml.ScalarNode) or not node.value:
-            raise self._missing(key, node, phrase("a text"))
+            raise self._missing(key, node, phrase("a string"))
         return str(node.value)
 
     def number(self, key: str, *, needed: bool = False) -> float:
@@ -108,7 +108,7 @@ class Keys:
         found: list[tuple[str, yaml.Node | None]] = []
         for item in items:
             if not isinstance(item, yaml.ScalarNode) or not item.value:
-                raise self._missing(key, item, phrase("a text, or a list of texts"))
+                raise self._missing(key, item, phrase("a string, or a list of strings"))
             found.append((str(item.value), item))
         return found
 

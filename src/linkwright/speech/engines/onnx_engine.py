@@ -150,5 +150,8 @@ def _names(text: str) -> tuple[str, ...]:
 
 def _unfit(path: Path, reason: Phrase) -> LinkwrightError:
     message = phrase("'{path}' is not a keyword spotter: {reason}", path=path, reason=reason)
-    hint = phrase("it takes 16 kHz sound [1, n] float32, gives [1, classes], and names them in its metadata 'names'")
+    hint = phrase(
+        "use a network that takes 16 kHz sound as float32 [1, n], outputs [1, classes], and names "
+        "the classes in its metadata 'names'"
+    )
     return LinkwrightError(Diagnostic("VOICE104", message, hint=hint))

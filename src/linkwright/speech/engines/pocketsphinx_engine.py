@@ -147,8 +147,8 @@ def _decoder(pocketsphinx: Any, folder: Path | None) -> Any:
     if folder is not None:
         dictionaries = sorted(path for path in folder.glob("*.dic*") if path.is_file()) if folder.is_dir() else []
         if not dictionaries or not all((folder / name).is_file() for name in _MODEL_FILES):
-            message = phrase("'{path}' holds no model of pocketsphinx", path=folder)
-            hint = phrase("it is a folder with 'mdef', what belongs to it, and a dictionary such as 'words.dict'")
+            message = phrase("'{path}' contains no pocketsphinx model", path=folder)
+            hint = phrase("give a folder with 'mdef', its other files, and a dictionary such as 'words.dict'")
             raise LinkwrightError(Diagnostic("VOICE104", message, hint=hint))
         settings |= {"hmm": str(folder), "dict": str(dictionaries[0])}
         _try_in_another_process(folder, settings)
@@ -174,5 +174,5 @@ def _try_in_another_process(folder: Path, settings: dict[str, Any]) -> None:
     if trial.returncode:
         message = phrase("pocketsphinx cannot load the model in '{path}'", path=folder)
         last = trial.stderr.strip().rpartition("\n")[2]
-        hint = phrase("it says: {reason}", reason=foreign(last)) if last else phrase("one of its files is damaged")
+        hint = phrase("it reports: {reason}", reason=foreign(last)) if last else phrase("one of its files is damaged")
         raise LinkwrightError(Diagnostic("VOICE104", message, hint=hint))

@@ -122,8 +122,8 @@ def _library() -> Any:
 def _model_of(language: str) -> Path:
     name = MODELS.get(language.partition("-")[0].lower())
     if name is None:
-        message = phrase("there is no model of Vosk for the language '{language}' here", language=language)
-        hint = phrase("name the folder of one from https://alphacephei.com/vosk/models as the model")
+        message = phrase("no Vosk model for the language '{language}' is installed", language=language)
+        hint = phrase("download one from https://alphacephei.com/vosk/models, and give its folder as the model")
         raise LinkwrightError(Diagnostic("VOICE105", message, hint=hint))
     return find_model(model_entry(name))
 
@@ -135,7 +135,7 @@ def _load(vosk: Any, folder: Path) -> Any:
         except Exception as error:  # noqa: BLE001 - Vosk raises nothing narrower
             reason = foreign(error)
     else:
-        reason = phrase("it lacks '{file}'", file=_ACOUSTIC_MODEL.as_posix())
-    message = phrase("'{path}' holds no model of Vosk: {reason}", path=folder, reason=reason)
-    hint = phrase("it is a folder as `linkwright models get vosk-en` makes it")
+        reason = phrase("it does not contain '{file}'", file=_ACOUSTIC_MODEL.as_posix())
+    message = phrase("'{path}' contains no Vosk model: {reason}", path=folder, reason=reason)
+    hint = phrase("give a model folder, such as `linkwright models get vosk-en` downloads")
     raise LinkwrightError(Diagnostic("VOICE104", message, hint=hint))

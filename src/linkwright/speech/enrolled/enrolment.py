@@ -39,10 +39,10 @@ def enrol(words: Words, name: str, samples: Samples, has_gaps: bool = False) -> 
     """
     reason = name_problem(name)
     if reason is not None:
-        return (_refused("VOICE204", phrase("a word cannot be called '{name}': {reason}", name=name, reason=reason)),)
+        return (_refused("VOICE204", phrase("a word cannot be named '{name}': {reason}", name=name, reason=reason)),)
     if len(words.names) >= MOST_WORDS and name not in words.names:
-        reason = phrase("there are {most} words already", most=MOST_WORDS)
-        return (_refused("VOICE204", phrase("a word cannot be called '{name}': {reason}", name=name, reason=reason)),)
+        reason = phrase("there are already {most} words", most=MOST_WORDS)
+        return (_refused("VOICE204", phrase("a word cannot be named '{name}': {reason}", name=name, reason=reason)),)
     if has_gaps:
         message = phrase("the sound that was recorded for '{name}' has gaps", name=name)
         return (

@@ -137,7 +137,7 @@ def name_problem(name: str) -> Phrase | None:
     if len(name) > _LONGEST_NAME:
         return phrase("it has more than {most} characters", most=_LONGEST_NAME)
     if not name.isprintable():
-        return phrase("it holds characters that cannot be shown")
+        return phrase("it contains characters that cannot be shown")
     return None
 
 
@@ -161,11 +161,11 @@ def _encoded(powers: NDArray[np.float64]) -> str:
 
 def _words(document: Any, shown: str) -> dict[str, tuple[Take, ...]]:
     if not isinstance(document, dict) or document.get("format") != _FORMAT:
-        raise _damaged(shown, phrase("it does not say that it is one"))
+        raise _damaged(shown, phrase("it is not marked as a file of enrolled words"))
     if document.get("version") != _VERSION:
         version = document.get("version")
         raise _damaged(
-            shown, phrase("it has version '{version}', and {known} is read", version=version, known=_VERSION)
+            shown, phrase("it has version '{version}', but only {known} is supported", version=version, known=_VERSION)
         )
     words = document.get("words")
     if not isinstance(words, list) or len(words) > MOST_WORDS:
@@ -193,11 +193,11 @@ def _read_take(take: Any, name: str, shown: str) -> Take:
         raise _damaged(shown, phrase("a take of the word '{name}' cannot be decoded", name=name)) from None
     count = len(frames) // BANDS
     if len(frames) % BANDS or not 1 <= count <= _MOST_FRAMES or len(noise) != BANDS:
-        raise _damaged(shown, phrase("a take of the word '{name}' has not the right length", name=name))
+        raise _damaged(shown, phrase("a take of the word '{name}' has the wrong length", name=name))
     return Take(_decoded(frames).reshape(count, BANDS), _decoded(noise))
 
 
 def _damaged(shown: str, why: Phrase, place: Span | None = None) -> LinkwrightError:
     message = phrase("'{path}' cannot be read as a file of enrolled words: {why}", path=shown, why=why)
-    hint = phrase("put a copy in its place, or remove it and enrol the words again")
+    hint = phrase("replace it with a copy, or remove it and enrol the words again")
     return LinkwrightError(Diagnostic("VOICE203", message, place, hint=hint))

@@ -71,7 +71,7 @@ class AudioCapture(SingleNode):
         self._warn_of_other_forms()
         if not 0 < chunk <= _MOST_CHUNK:
             message = phrase(
-                "parameter '{name}' must be {least} to {most}, and it is {value}",
+                "parameter '{name}' must be {least} to {most}, but it is {value}",
                 name="chunk",
                 least=1,
                 most=_MOST_CHUNK,

@@ -59,7 +59,7 @@ class AudioForm:
         if not LOWEST_RATE <= self.rate <= HIGHEST_RATE:
             raise _unreadable(phrase("its rate is {rate} Hz", rate=self.rate))
         if _FORMAT.fullmatch(self.sample_format) is None:
-            raise _unreadable(phrase("its samples are '{format}'", format=self.sample_format))
+            raise _unreadable(phrase("its sample format is '{format}'", format=self.sample_format))
 
     @classmethod
     def of(cls, info: Any) -> AudioForm:
@@ -69,12 +69,12 @@ class AudioForm:
             LinkwrightError: VOICE411, sound in this format, such as MP3, is not supported.
         """
         if info.coding_format not in ("", WAVE):
-            raise _unreadable(phrase("it is coded as '{coding}'", coding=info.coding_format))
+            raise _unreadable(phrase("its encoding is '{coding}'", coding=info.coding_format))
         return cls(info.channels, info.sample_rate, info.sample_format)
 
 
 def _unreadable(why: Phrase) -> LinkwrightError:
-    message = phrase("sound of this form is not read: {why}", why=why)
+    message = phrase("sound in this format is not supported: {why}", why=why)
     hint = phrase("publish it with format 'wave', sample_format 'S16LE', sample_rate 16000 and channels 1")
     return LinkwrightError(Diagnostic("VOICE411", message, hint=hint))
 

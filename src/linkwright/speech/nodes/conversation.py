@@ -78,7 +78,7 @@ class Conversation:
             if answer:
                 self._carry_out(understood, asked_for)
             else:
-                self.answer(phrase("I leave it"))
+                self.answer(phrase("I will not do it"))
             return True
         found = self._commands.understand(text)
         if found is None:
@@ -123,7 +123,7 @@ class Conversation:
     def drive_ended(self, ending: Ending) -> None:
         """Handle the end of a drive, which has finished or timed out."""
         if ending == "stuck":
-            self.answer(phrase("I am stuck, and stop"))
+            self.answer(phrase("I am stuck, so I stop"))
 
     def goal_ended(self, reached: bool, reason: str) -> None:
         """Handle the end of a goal, which was reached or has failed."""
@@ -199,4 +199,4 @@ class Conversation:
 
     def _unanswered(self) -> None:
         self._forget()
-        self.answer(phrase("there is no answer, so I leave it"))
+        self.answer(phrase("I received no answer, so I will not do it"))

@@ -83,6 +83,6 @@ class Presses:
             return phrase("I do not know your words: enrol them in the Voice panel, in the room where you speak")
         if press.unknown.nearest:
             return phrase(
-                "I heard something that is none of the commands: '{text}' is the nearest", text=press.unknown.nearest
+                "I heard something that is not a command: '{text}' is the nearest", text=press.unknown.nearest
             )
-        return phrase("I heard something that is none of the commands")
+        return phrase("I heard something that is not a command")

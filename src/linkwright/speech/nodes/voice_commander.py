@@ -198,13 +198,13 @@ class VoiceCommander(SingleNode):
             self._listener.note_gap(missing)
             self._presses.note_gap()
             self._node.get_logger().warning(
-                phrase("{seconds} s of sound were lost on the way", seconds=f"{missing:.1f}"),
+                phrase("{seconds} s of sound were lost during transmission", seconds=f"{missing:.1f}"),
                 throttle_duration_sec=5.0,
             )
         if not self._listener.hear(samples):
             self._presses.note_gap()
             self._node.get_logger().warning(
-                phrase("the speech engine is too slow for this machine: sound is left out"), throttle_duration_sec=5.0
+                phrase("this machine is too slow for the speech engine: sound is dropped"), throttle_duration_sec=5.0
             )
 
     def _on_listen(self, held: bool) -> None:
@@ -325,7 +325,7 @@ class VoiceCommander(SingleNode):
     def _deaf(self) -> None:
         if self._spoken and self._conversation.is_busy:
             self._conversation.stop()
-            self._conversation.answer(phrase("the audio source is gone, so I stop"))
+            self._conversation.answer(phrase("the audio source stopped, so I stop"))
 
     def _lost(self, publisher: EndpointInfo) -> None:
         if not self._spoken and self._conversation.is_busy:

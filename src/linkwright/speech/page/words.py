@@ -166,9 +166,9 @@ def _rename(words: Words, name: str, new_name: str) -> None:
     """Rename a word, keeping its takes."""
     reason = name_problem(new_name)
     if reason is None and new_name in words.names and new_name != name:
-        reason = phrase("there is a word of that name")
+        reason = phrase("a word with this name already exists")
     if reason is not None:
-        message = phrase("a word cannot be called '{name}': {reason}", name=new_name, reason=reason)
+        message = phrase("a word cannot be named '{name}': {reason}", name=new_name, reason=reason)
         raise LinkwrightError(Diagnostic("VOICE204", message))
     takes_of = {
         new_name if name_of_word == name else name_of_word: words.takes(name_of_word) for name_of_word in words.names

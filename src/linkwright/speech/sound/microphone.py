@@ -49,7 +49,8 @@ class Microphone:
                 "the microphone '{device}' cannot be opened: {reason}", device=device, reason=foreign(error)
             )
             hint = phrase(
-                "`python -m sounddevice` lists the devices; the microphone of the browser needs none of the system"
+                "run `python -m sounddevice` to list the devices, or use the browser's microphone, which "
+                "needs no system device"
             )
             raise LinkwrightError(Diagnostic("VOICE413", message, hint=hint)) from None
 

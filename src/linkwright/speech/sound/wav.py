@@ -65,7 +65,7 @@ def parse_wav(data: bytes, name: str) -> Samples:
     if (form.kind, form.bits) not in _DEPTHS:
         kind = _OTHER_FORMS.get(form.kind, "PCM" if form.kind == _PCM else f"0x{form.kind:04x}")
         raise _no_wav(
-            name, phrase("its samples are {kind} of {bits} bits, which is not read", kind=kind, bits=form.bits)
+            name, phrase("its samples are {kind} of {bits} bits, which is not supported", kind=kind, bits=form.bits)
         )
     if not 1 <= form.channels <= 64:
         raise _no_wav(name, phrase("it has {channels} channels", channels=form.channels))
@@ -73,7 +73,7 @@ def parse_wav(data: bytes, name: str) -> Samples:
         raise _no_wav(
             name,
             phrase(
-                "its rate is {rate} Hz, and {lowest} to {highest} Hz are read",
+                "its rate is {rate} Hz, but {lowest} to {highest} Hz are supported",
                 rate=form.rate,
                 lowest=LOWEST_RATE,
                 highest=HIGHEST_RATE,
@@ -97,7 +97,7 @@ def wav_bytes(samples: Samples) -> bytes:
 def _chunks(data: bytes, name: str) -> tuple[_Form, bytes]:
     """Return the format and the bytes of the samples."""
     if data[:4] != b"RIFF" or data[8:12] != b"WAVE":
-        raise _no_wav(name, phrase("it does not begin as WAV files do"))
+        raise _no_wav(name, phrase("it does not begin like a WAV file"))
     form: _Form | None = None
     at = 12
     while at + 8 <= len(data):
@@ -110,10 +110,10 @@ def _chunks(data: bytes, name: str) -> tuple[_Form, bytes]:
             form = _Form(tag, channels, rate, bits)
         elif kind == b"data":
             if form is None:
-                raise _no_wav(name, phrase("its samples come before the chunk with their format"))
+                raise _no_wav(name, phrase("its samples are stored before the chunk with their format"))
             return form, body
         at += 8 + size + size % 2
-    raise _no_wav(name, phrase("it holds no samples"))
+    raise _no_wav(name, phrase("it contains no samples"))
 
 
 def _values(sound: bytes, form: _Form) -> NDArray[np.float64]:

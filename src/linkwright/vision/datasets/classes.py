@@ -92,8 +92,8 @@ def read_classes(path: Path) -> ClassRules:
 
 
 def _wrong(document: YamlDocument, node: yaml.Node | None) -> LinkwrightError:
-    hint = phrase("such as `ball: [football, '*_ball']`, each name once")
-    return document.error(phrase("classes are names with patterns of models"), node, hint)
+    hint = phrase("write for example `ball: [football, '*_ball']`, with each name only once")
+    return document.error(phrase("classes must be names with patterns of model names"), node, hint)
 
 
 def usual_class(name: str) -> str:

@@ -193,8 +193,8 @@ class DatasetFolder:
             raise LinkwrightError(Diagnostic("VISION206", message)) from None
         ours = (_FORM, list(self._classes), *self._size, list(self._formats))
         if (card.get("form"), card.get("classes"), card.get("width"), card.get("height"), card.get("formats")) != ours:
-            message = phrase("the dataset in '{folder}' has other classes, sizes or formats", folder=shown)
-            hint = phrase("its classes: {names}", names=", ".join(map(str, card.get("classes") or ())))
+            message = phrase("the dataset in '{folder}' has different classes, sizes or formats", folder=shown)
+            hint = phrase("its classes are {names}", names=", ".join(map(str, card.get("classes") or ())))
             raise LinkwrightError(Diagnostic("VISION206", message, hint=hint))
         for split, written in lists.items():
             self._images[split] = written["images"]
@@ -266,7 +266,7 @@ def _remove(files: Sequence[Path]) -> None:
 def _occupied(path: Path, *, is_dataset: bool) -> LinkwrightError:
     shown = display_path(path)
     if is_dataset:
-        message = phrase("there is a dataset in '{folder}' already", folder=shown)
+        message = phrase("'{folder}' already contains a dataset", folder=shown)
         hint = phrase("use --append to add to it, or --force to replace it")
     else:
         message = phrase("'{folder}' already exists and is not a dataset", folder=shown)

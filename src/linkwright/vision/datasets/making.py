@@ -207,7 +207,10 @@ def _free_name(name: str, simulation: Simulation) -> str:
 def _nothing(world: str, classes: str | None) -> LinkwrightError:
     message = phrase("there is no object to label in the world '{world}'", world=world)
     hint = (
-        phrase("all its models are ground, walls or the like; name models or visuals by --classes, or --add some")
+        phrase(
+            "all its models are ground, walls or the like; name models or visuals with --classes, or add "
+            "some with --add"
+        )
         if classes is None
         else phrase("none of its models or visuals has a name that fits a pattern in '{file}'", file=classes)
     )

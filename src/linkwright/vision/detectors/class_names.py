@@ -14,7 +14,7 @@ from linkwright.files.input_files import read_text
 
 _LARGEST = 1_000_000
 """Characters of metadata that are read as names."""
-_FORMS = phrase("write a name in each line, or as YAML a list of names or a mapping from 0, 1, 2, ... to names")
+_FORMS = phrase("write one name per line, or YAML with a list of names or a mapping from 0, 1, 2, ... to names")
 
 
 def names_in_metadata(text: str) -> tuple[str, ...] | None:

@@ -24,7 +24,7 @@ def gpu_of(device: str) -> str | None:
         return None
     gpu = _GPU.match(device.lower())
     if gpu is None:
-        raise bad_setting("device", device, phrase("it is 'cpu', or 'cuda:0' for the first GPU"))
+        raise bad_setting("device", device, phrase("use 'cpu', or 'cuda:0' for the first GPU"))
     return gpu[1] or gpu[2] or "0"
 
 
@@ -43,4 +43,4 @@ def without_network(options: DetectorOptions) -> tuple[Phrase, ...]:
             raise bad_setting(name, value, phrase("only networks have this option: leave it out"))
     if gpu_of(options.device) is None:
         return ()
-    return (phrase("this detector has no network that '{device}' would run; it uses the CPU", device=options.device),)
+    return (phrase("this detector has no network to run on '{device}'; it uses the CPU", device=options.device),)

@@ -91,7 +91,9 @@ def _final_outputs(file: Path, interpreter: Any) -> list[int]:
         get_ops_detail for get_ops_detail in interpreter._get_ops_details() if get_ops_detail["op_name"] == _LAST_STEP
     ]
     if len(last) != 1:
-        message = phrase("the network in '{file}' has no final boxes, as EfficientDet-Lite has", file=file.name)
+        message = phrase(
+            "the network in '{file}' does not output final boxes as EfficientDet-Lite does", file=file.name
+        )
         raise LinkwrightError(Diagnostic("VISION106", message, hint=phrase("export it as ONNX")))
     return [int(output) for output in last[0]["outputs"]]
 
@@ -105,4 +107,4 @@ def _names_in(file: Path) -> tuple[str, ...]:
         return tuple(line.strip() for line in lines)
     except (BadZipFile, StopIteration, UnicodeDecodeError, OSError):
         message = phrase("there are no labels in '{path}'", path=file)
-        raise LinkwrightError(Diagnostic("VISION108", message, hint=phrase("give a file of labels"))) from None
+        raise LinkwrightError(Diagnostic("VISION108", message, hint=phrase("give a labels file"))) from None

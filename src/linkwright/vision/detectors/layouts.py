@@ -121,9 +121,9 @@ def find_layout(
     """
     if metadata.task not in _BOXES:
         message = phrase(
-            "the network in '{file}' is for '{task}', and has no boxes", file=file.name, task=metadata.task
+            "the network in '{file}' is for '{task}', so it outputs no boxes", file=file.name, task=metadata.task
         )
-        raise LinkwrightError(Diagnostic("VISION106", message, hint=phrase("use one for 'detect'")))
+        raise LinkwrightError(Diagnostic("VISION106", message, hint=phrase("use a network for 'detect'")))
     more, task = _more_numbers(shapes, metadata)
     named = labels if labels is not None or metadata.names is None else len(metadata.names)
     first = shapes[0] if shapes else ()
@@ -131,7 +131,7 @@ def find_layout(
     if not forms:
         shown = " ".join(str(list(shape)) for shape in shapes)
         message = phrase(
-            "the outputs of '{file}' are not boxes as YOLO has them: {shapes}", file=file.name, shapes=shown
+            "the outputs of '{file}' are not boxes in a YOLO format: {shapes}", file=file.name, shapes=shown
         )
         hint = phrase(
             "supported are [1, 4 + classes, N], [1, N, 5 + classes] with three rows for each place, and [1, N, "
@@ -155,14 +155,14 @@ def wrong_number(file: Path, classes: int, named: int, labels: Path | None) -> L
     """
     if labels is None:
         message = phrase(
-            "the network in '{file}' has {classes} classes, and its metadata name {named}",
+            "the network in '{file}' has {classes} classes, but its metadata name {named}",
             file=file.name,
             classes=classes,
             named=named,
         )
-        return LinkwrightError(Diagnostic("VISION107", message, hint=phrase("give a file of labels that has as many")))
+        return LinkwrightError(Diagnostic("VISION107", message, hint=phrase("give a labels file with as many names")))
     message = phrase(
-        "the network in '{file}' has {classes} classes, and '{labels}' names {named}",
+        "the network in '{file}' has {classes} classes, but '{labels}' names {named}",
         file=file.name,
         classes=classes,
         labels=labels,

@@ -43,9 +43,7 @@ class NetworkDetector(Detector):
         self._file, self._labels = file, options.labels
         labels = read_labels(options.labels) if options.labels is not None else None
         if options.size is not None and max(options.size) > LARGEST_SIZE:
-            raise bad_setting(
-                "imgsz", max(options.size), phrase("it is at most {largest} pixels", largest=LARGEST_SIZE)
-            )
+            raise bad_setting("imgsz", max(options.size), phrase("give at most {largest} pixels", largest=LARGEST_SIZE))
         self._session, self._notes = session_on(file, options.device)
         metadata = Metadata.of(self._session.get_modelmeta().custom_metadata_map)
         self._input, self._kind, fixed = _image_input(file, self._session.get_inputs())
@@ -60,9 +58,9 @@ class NetworkDetector(Detector):
         self._layout = find_layout(shapes, self._size, metadata, file, named, options.labels)
         self._names = self._named(metadata.names, labels)
         if self._layout.left_out:
-            left_out = phrase("masks") if self._layout.left_out == "masks" else phrase("key points")
+            left_out = phrase("masks") if self._layout.left_out == "masks" else phrase("keypoints")
             self._notes.append(
-                phrase("of '{file}' the boxes are taken; {what} are left out", file=file.name, what=left_out)
+                phrase("only the boxes of '{file}' are used; {what} are left out", file=file.name, what=left_out)
             )
 
     @property
@@ -101,8 +99,10 @@ class NetworkDetector(Detector):
         with np.errstate(invalid="ignore"):
             found = self._layout.candidates(output, threshold)
         if np.isnan(output).any() or not (np.isfinite(found.boxes).all() and np.isfinite(found.scores).all()):
-            message = phrase("the network in '{file}' gives boxes or scores that are not numbers", file=self._file.name)
-            hint = phrase("it is broken, or 16 bits are too few for it: export it with 32")
+            message = phrase(
+                "the network in '{file}' outputs boxes or scores that are not numbers", file=self._file.name
+            )
+            hint = phrase("the network is broken, or needs more than 16 bits: export it with 32 bits")
             raise LinkwrightError(Diagnostic("VISION106", message, hint=hint))
         return found
 
@@ -132,12 +132,12 @@ class NetworkDetector(Detector):
         metadata = self._session.get_modelmeta().custom_metadata_map.get("names")
         if metadata:
             note = phrase(
-                "the names of the classes in '{file}' cannot be read: they are numbered; give a file of labels",
+                "the names of the classes in '{file}' cannot be read, so they are numbered; give a labels file",
                 file=self._file.name,
             )
         else:
             note = phrase(
-                "'{file}' does not name its classes: they are numbered; give a file of labels", file=self._file.name
+                "'{file}' does not name its classes, so they are numbered; give a labels file", file=self._file.name
             )
         self._notes.append(note)
         return tuple(map(str, range(classes or 1000)))
@@ -157,7 +157,7 @@ def _image_input(file: Path, inputs: Sequence[Any]) -> tuple[str, type[np.floati
         message = phrase(
             "the network in '{file}' does not take an image: its inputs are {inputs}", file=file.name, inputs=shown
         )
-        hint = phrase("an image is float or float16 [1, 3, height, width]")
+        hint = phrase("use a network whose input is float or float16 [1, 3, height, width]")
         raise LinkwrightError(Diagnostic("VISION105", message, hint=hint))
     rows, columns = shape[2:]
     size = (rows, columns) if isinstance(rows, int) and isinstance(columns, int) else None

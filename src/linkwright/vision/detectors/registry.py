@@ -47,9 +47,10 @@ def make_detector(model: str, options: DetectorOptions) -> Detector:
     if file.suffix.lower() in _OTHER_FORMS:
         message = phrase("'{file}' is not an ONNX file", file=file)
         export = phrase(
-            "networks are run from ONNX files; with Ultralytics: `yolo export model={file} format=onnx`", file=file.name
+            "only ONNX files are run; export the network, with Ultralytics by `yolo export model={file} format=onnx`",
+            file=file.name,
         )
-        other = phrase("networks are run from ONNX files: export it as one")
+        other = phrase("only ONNX files are run: export the network as one")
         hint = export if file.suffix.lower() == ".pt" else other
         raise LinkwrightError(Diagnostic("VISION104", message, hint=hint))
     if not file.is_file():

@@ -21,7 +21,7 @@ def number(settings: Mapping[str, object], name: str, default: float, low: float
     """
     value = settings.get(name, default)
     if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-        raise bad_setting(name, value, phrase("it is a number from {low} to {high}", low=low, high=high))
+        raise bad_setting(name, value, phrase("give a number from {low} to {high}", low=low, high=high))
     return float(value)
 
 
@@ -33,7 +33,7 @@ def choice(settings: Mapping[str, object], name: str, default: str, known: Seque
     """
     value = str(settings.get(name, default))
     if value not in known:
-        hint = did_you_mean(value, known) or phrase("it is one of {known}", known=", ".join(known))
+        hint = did_you_mean(value, known) or phrase("choose from {known}", known=", ".join(known))
         raise bad_setting(name, value, hint)
     return value
 
@@ -50,6 +50,8 @@ def hsv_range(name: str, value: object) -> tuple[int, ...]:
         isinstance(component, int | float) and 0 <= component <= limit
         for component, limit in zip(numbers, limits, strict=True)
     ):
-        hint = phrase("it is six numbers: least hue (0 to 179), saturation and value (0 to 255), then the largest")
+        hint = phrase(
+            "give six numbers: the minimum hue (0 to 179), saturation and value (0 to 255), then the maximum of each"
+        )
         raise bad_setting(name, value, hint)
     return tuple(int(number) for number in numbers)

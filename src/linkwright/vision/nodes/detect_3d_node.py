@@ -72,7 +72,7 @@ class Detect3DNode(SingleNode):
             )
             log_unknown(node)
         self._unit = _MILLIMETRES / divisor
-        self._poses = FramePoses(node, "detections have no place:")
+        self._poses = FramePoses(node, "the positions of detections are unknown:")
         self._depths: deque[Any] = deque(maxlen=_KEPT)
         self._cameras: dict[str, CameraModel] = {}
         self._array = get_message(self.FORM.places)
@@ -165,7 +165,7 @@ class Detect3DNode(SingleNode):
 
     def _complain(self, reason: str) -> None:
         self._node.get_logger().warning(
-            f"detections have no place: {reason}", throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS
+            f"the positions of detections are unknown: {reason}", throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS
         )
 
 

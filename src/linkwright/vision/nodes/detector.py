@@ -176,7 +176,7 @@ class DetectorNode(SingleNode):
         size = self._value("imgsz_height"), self._value("imgsz_width")
         if 0 in size and any(size):
             missing = "imgsz_width" if size[0] else "imgsz_height"
-            raise bad_setting(missing, 0, phrase("an input has a height and a width: give both, or none"))
+            raise bad_setting(missing, 0, phrase("give both the height and the width of the input, or neither"))
         labels = self._value(dialect.labels)
         return DetectorOptions(
             labels=Path(labels).expanduser() if labels else None,

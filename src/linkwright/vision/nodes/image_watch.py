@@ -49,7 +49,7 @@ class ImageWatch:
             if came and self._has_warned:
                 self._has_warned = False
                 self._patience *= 2
-                self._node.get_logger().info(localized(phrase("images arrive now")))
+                self._node.get_logger().info(localized(phrase("images are arriving")))
             return
         self._quiet += 1
         if self._has_warned or self._quiet < self._patience:
@@ -76,7 +76,7 @@ class ImageWatch:
         offered = {endpoint.qos_profile.reliability for endpoint in fitting}
         if self._qos.reliability is ReliabilityPolicy.RELIABLE and offered == {ReliabilityPolicy.BEST_EFFORT}:
             return phrase(
-                "no images arrive: '{topic}' is published best effort, and this node requests reliable", topic=topic
+                "no images arrive: '{topic}' is published best effort, but this node requests reliable", topic=topic
             ), phrase("set '{parameter}' to {value}", parameter="image_reliability", value=2)
         seconds = round(_SECONDS * self._quiet)
         return phrase("no image has arrived on '{topic}' for {seconds} s", topic=topic, seconds=seconds), None

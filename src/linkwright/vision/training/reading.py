@@ -74,7 +74,7 @@ class Dataset:
             message = phrase(
                 "the dataset '{folder}' has no split '{split}'", folder=display_path(self.folder), split=split
             )
-            raise LinkwrightError(Diagnostic("VISION303", message, hint=phrase("it has {known}", known=known)))
+            raise LinkwrightError(Diagnostic("VISION303", message, hint=phrase("the package has {known}", known=known)))
         paths = [
             path
             for folder in self.splits[split]
@@ -107,7 +107,7 @@ def open_dataset(folder: Path) -> Dataset:
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         raise _no_dataset(file, foreign(error)) from None
     if not isinstance(content, dict):
-        raise _no_dataset(file, phrase("it does not hold names and values"))
+        raise _no_dataset(file, phrase("it is not a mapping of names to values"))
     names = _names(file, content.get("names"))
     base = file.parent
     if isinstance(content.get("path"), str):
@@ -130,8 +130,8 @@ def _description(folder: Path) -> Path:
     files = sorted(folder.glob("*.y*ml"))
     preferred = [file for file in files if file.stem in {"data", "dataset"}]
     if not files:
-        hint = phrase("`linkwright dataset` makes one; others have a file data.yaml")
-        raise _no_dataset(folder, phrase("there is no YAML file in it"), hint)
+        hint = phrase("give a dataset of `linkwright dataset`, or a folder with a data.yaml")
+        raise _no_dataset(folder, phrase("it contains no YAML file"), hint)
     return (preferred or files)[0]
 
 
@@ -216,11 +216,11 @@ def _row(text: Path, number: int, line: str, classes: int) -> list[float]:
         row = []
     problem: Phrase | None = None
     if len(row) != 5:
-        problem = phrase("a label has five numbers, class, x, y, width, height")
+        problem = phrase("a label must have five numbers: class, x, y, width, height")
     elif row[0] not in range(classes):
         problem = phrase("the class {number} is not one of the {count} in 'names'", number=words[0], count=classes)
     elif not all(0 <= value <= 1 for value in row[1:]):
-        problem = phrase("x, y, width and height are shares of the image, between 0 and 1")
+        problem = phrase("x, y, width and height must be fractions of the image, between 0 and 1")
     if problem is None:
         return row
     span = Span(display_path(text), number, 1, number, len(line) + 1)

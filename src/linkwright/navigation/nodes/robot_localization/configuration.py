@@ -157,7 +157,7 @@ def _frames(node: Node) -> Frames:
                     odom=frames.odom,
                     base=frames.base,
                 ),
-                hint=phrase("see REP 105; they are map, odom and base_link unless they are given"),
+                hint=phrase("see REP 105; the defaults are map, odom and base_link"),
             )
         )
     if frames.world not in (frames.map, frames.odom):
@@ -288,7 +288,7 @@ def check_length(name: str, length: int, lengths: tuple[int, ...]) -> None:
     if length not in lengths:
         known = " / ".join(str(length) for length in lengths)
         message = phrase(
-            "parameter '{name}' must have {known} values and has {length}", name=name, known=known, length=length
+            "parameter '{name}' must have {known} values, but has {length}", name=name, known=known, length=length
         )
         raise LinkwrightError(Diagnostic("NODE441", message))
 

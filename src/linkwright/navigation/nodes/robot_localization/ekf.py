@@ -192,7 +192,7 @@ class EkfNode(SingleNode):
 
     def _health(self) -> Health:
         if not self._filter.initialized:
-            return Health(Level.WARN, "No measurement has come yet.")
+            return Health(Level.WARN, "No measurement has been received yet.")
         return Health(Level.OK, "The robot_localization state estimation node appears to be functioning properly.")
 
     # --- commands ----------------------------------------------------------------------------------------------------
@@ -226,7 +226,7 @@ class EkfNode(SingleNode):
         turn = normalized(orientation.x, orientation.y, orientation.z, orientation.w)
         pose: Transform = (position.x, position.y, position.z, *turn)
         if not all(isfinite(number) for number in pose):
-            self._node.get_logger().error("set_pose: the pose has numbers that are none, and is left aside")
+            self._node.get_logger().error("set_pose: the pose has values that are not finite, so it is ignored")
             return
         reader = PoseReader((True,) * SIZE, two_d=self._configuration.two_d)
         covariance = np.asarray(message.pose.covariance, dtype=np.float64).reshape(6, 6)

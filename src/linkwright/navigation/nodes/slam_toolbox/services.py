@@ -93,7 +93,7 @@ class ToolboxServices:
             self._logger.error("deserialize_map: match_type is not set; nothing was read")
         elif localize != toolbox.localizes:
             mode = "localization" if toolbox.localizes else "non-localization"
-            self._logger.error(f"deserialize_map: match_type {request.match_type} is none for {mode} mode")
+            self._logger.error(f"deserialize_map: match_type {request.match_type} is not valid in {mode} mode")
         elif not request.filename:
             self._logger.warning("deserialize_map: no filename is given; nothing was read")
         else:
@@ -159,7 +159,7 @@ class ToolboxServices:
         yaw = rpy_from_quaternion(normalized(turned.x, turned.y, turned.z, turned.w))[2]
         pose = np.array((position.x, position.y, yaw))
         if not np.isfinite(pose).all():
-            self._logger.error("initialpose: the pose has numbers that are none, and is left aside")
+            self._logger.error("initialpose: the pose has values that are not finite, so it is ignored")
             return
         self._toolbox.place(pose)
         self._logger.info(f"LocalizePoseCallback: Localizing to: ({pose[0]:.2f} {pose[1]:.2f}), theta={pose[2]:.2f}")

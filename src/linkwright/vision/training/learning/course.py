@@ -251,12 +251,12 @@ class Course:
             state: dict[str, Any] = torch.load(path, map_location=self._device, weights_only=True)
             saved = state["shape"], state["names"]
         except (OSError, RuntimeError, pickle.UnpicklingError, KeyError, EOFError, TypeError):
-            message = phrase("'{path}' is not a checkpoint of a training", path=display_path(path))
+            message = phrase("'{path}' is not a training checkpoint", path=display_path(path))
             hint = phrase("leave out --resume to start from scratch")
             raise LinkwrightError(Diagnostic("VISION306", message, hint=hint)) from None
         if saved != (asdict(self.shape), list(self.names)):
             message = phrase(
-                "'{path}' is a checkpoint of a training with other classes or sizes", path=display_path(path)
+                "'{path}' is a checkpoint of a training with different classes or sizes", path=display_path(path)
             )
             hint = phrase("leave out --resume to start from scratch")
             raise LinkwrightError(Diagnostic("VISION306", message, hint=hint))

@@ -133,5 +133,5 @@ def _normalize(network: Network, blocks: Sequence[Convolution], images: Iterable
 
 
 def _unusable(path: Path, reason: Phrase, hint: Phrase | None = None) -> LinkwrightError:
-    message = phrase("cannot begin with the weights of '{path}': {reason}", path=display_path(path), reason=reason)
+    message = phrase("cannot start from the weights of '{path}': {reason}", path=display_path(path), reason=reason)
     return LinkwrightError(Diagnostic("VISION308", message, hint=hint))
