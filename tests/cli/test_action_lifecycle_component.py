@@ -283,6 +283,6 @@ def test_mistakes_of_components(in_graph, capsys):
     assert "Failed to load component" in err
     _, err = run(capsys, "component", "unload", "/box", "7", status=1)
     assert "Failed to unload component 7" in err
-    assert "its nodes: 1 /talker" in err
+    assert "the container's nodes are 1 /talker" in err
     words = ["load", "/box", "demo_nodes_cpp", "demo_nodes_cpp::Talker", "--log-level", "loud"]
     assert "there is no log level 'loud'" in run(capsys, "component", *words, status=1)[1]

@@ -161,7 +161,7 @@ def test_many_findings_that_are_alike_are_one_for_people(here, capsys):
     main(["check", "r.urdf", *ONLY])
     output = capsys.readouterr().err
     assert output.count("warning[LW221]") == 1
-    assert "note: the axis of joint 'j2' is not of length 1 but 2: '0 0 2' (r.urdf:75:" in output
+    assert "note: the axis of joint 'j2' has length 2, not 1: '0 0 2' (r.urdf:75:" in output
     assert "note: and 67 more like it (--all shows them)" in output
     assert output.endswith("0 errors, 70 warnings\n")
     main(["check", "r.urdf", *ONLY, "--all"])
@@ -290,7 +290,7 @@ def test_wrong_usage(here, capsys, words, message):
 def test_a_missing_file_is_told(here, capsys):
     write(here, {"b.urdf": GOOD})
     assert main(["check", "c.urdf"]) == 1
-    assert "available: b.urdf" in capsys.readouterr().err
+    assert "choose from b.urdf" in capsys.readouterr().err
 
 
 def test_an_address_is_shown_as_it_was_typed(here, capsys):

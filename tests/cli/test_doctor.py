@@ -40,7 +40,7 @@ def doctor(capsys, *words: str, status: int) -> str:
 
 def test_a_robot_that_is_well(in_graph, capsys):
     in_graph(robot)
-    assert "All is well: 2 nodes, 6 topics, 3 frames" in doctor(capsys, status=0)
+    assert "No problems found: 2 nodes, 6 topics, 3 frames" in doctor(capsys, status=0)
 
 
 def test_nobody_publishes_joint_states(in_graph, capsys):

@@ -19,7 +19,10 @@ def file(tmp_path, monkeypatch):
 def test_what_is_inferred_is_shown_with_place_reason_and_text(file, capsys):
     assert main(["drive", "mbot.urdf", "--show"]) == 0
     printed = capsys.readouterr().out
-    assert "mbot.urdf:2: DRIVE102 link 'base_link' has no mass: it gets 6.03 kg, its shapes at 300 kg/m3\n" in printed
+    assert (
+        "mbot.urdf:2: DRIVE102 link 'base_link' has no mass: it gets 6.03 kg, the mass of its shapes at 300 kg/m3\n"
+        in printed
+    )
     assert "        <left_joint>left_wheel_joint</left_joint>\n" in printed
     assert file.read_text() == MBOT
 

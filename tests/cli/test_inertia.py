@@ -124,7 +124,7 @@ def test_what_a_macro_writes_is_printed_and_refused(tmp_path, capsys):
     assert '<mass value="4.18879"/>' in captured.out
     assert "wrote 0 <inertial> to no file" in captured.out
     assert "INR211" in captured.err
-    assert "it is written by the macro 'ball'" in captured.err
+    assert "the macro 'ball' generates it" in captured.err
     assert f"{path}:3:5" in captured.err
     assert path.read_text() == before
 

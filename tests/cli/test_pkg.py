@@ -175,7 +175,7 @@ def test_an_existing_folder_is_left_alone(existing: str, capsys: pytest.CaptureF
     assert main(["pkg", "create", "arm", "--license", "MIT", *ADA]) == 1
     output = capsys.readouterr()
     assert output.out == ""
-    assert output.err.startswith(f"error[PKG207]: the {existing} './arm' exists already\n   = hint: remove it, or ")
+    assert output.err.startswith(f"error[PKG207]: the {existing} './arm' already exists\n   = hint: remove it, or ")
     assert list(place.iterdir()) == [] if existing == "folder" else place.read_text(encoding="utf-8") == "mine"
 
 

@@ -53,4 +53,4 @@ def test_the_manifest_and_parts_of_it(capsys: pytest.CaptureFixture[str]) -> Non
     error = output_of(capsys, "xml", "arm", "-t", "licence", status=1)
     assert "package.xml of 'arm' has no element <licence>" in error
     assert "did you mean 'license'?" in error
-    assert "available: depend" in output_of(capsys, "xml", "arm", "-t", "zzzzzz", status=1)
+    assert "choose from depend" in output_of(capsys, "xml", "arm", "-t", "zzzzzz", status=1)

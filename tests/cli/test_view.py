@@ -56,7 +56,7 @@ def test_a_recording_of_ros_1_is_told_as_one(folder: Path, capsys: pytest.Captur
     (folder / "old.bag").write_bytes(b"#ROSBAG V2.0\n\0\1")
     assert main(["view", "old.bag"]) == 1
     output = capsys.readouterr().err
-    assert "'old.bag' cannot be read as a recording: it is of ROS 1" in output
+    assert "'old.bag' cannot be read as a recording: it is a ROS 1 recording" in output
     assert "rosbags-convert" in output
 
 

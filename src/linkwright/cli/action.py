@@ -29,7 +29,7 @@ _LONGEST_CANCEL = 3.0
 def configure_list(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of ``action list``."""
     add_session_arguments(parser)
-    add_types_argument(parser, types_help="show the type of each action beside it")
+    add_types_argument(parser, types_help="also print the type of each action")
     add_count_argument(parser, "action")
 
 
@@ -47,7 +47,7 @@ def configure_info(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of ``action info``."""
     add_session_arguments(parser)
     parser.add_argument("action_name", metavar="ACTION", help="the action, such as /fibonacci")
-    parser.add_argument("-t", "--show-types", action="store_true", help="show the action's type beside each node")
+    parser.add_argument("-t", "--show-types", action="store_true", help="also print the action's type for each node")
     parser.add_argument("-c", "--count", action="store_true", help="print only the number of results")
 
 

@@ -17,7 +17,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "networks",
         metavar="NETWORK",
         nargs=2,
-        help="dds or zenoh; a colon and a number name a domain other than ROS_DOMAIN_ID: dds:5",
+        help="dds or zenoh; add a colon and a number to use a domain other than ROS_DOMAIN_ID, as in dds:5",
     )
     parser.add_argument(
         "--allow",
@@ -34,7 +34,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         action="extend",
         default=[],
-        help="do not carry those with these names, even if --allow includes them",
+        help="do not carry topics, services and actions with these names, even if --allow includes them",
     )
 
 

@@ -67,7 +67,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--all", action="store_true", help="print every finding, not only the first of similar ones")
     parser.add_argument("--format", choices=FORMATS, help="the output format (default: text)")
-    parser.add_argument("--strict", action="store_true", help="exit with status 1 for warnings too")
+    parser.add_argument("--strict", action="store_true", help="exit with status 1 also for warnings")
     parser.add_argument(
         "--select", metavar="RULES", action="append", help="report only these rules, such as LW2,axis-zero"
     )

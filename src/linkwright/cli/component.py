@@ -260,7 +260,9 @@ async def _unload_component(session: Session, container: str, uid: int) -> None:
             Diagnostic(
                 "CLI434",
                 message,
-                hint=phrase("its nodes: {there}", there=nodes) if nodes else phrase("the container is empty"),
+                hint=phrase("the container's nodes are {there}", there=nodes)
+                if nodes
+                else phrase("the container is empty"),
             )
         )
 
@@ -324,7 +326,7 @@ async def _call(session: Session, container: str, service: str, **fields: Any) -
 VERBS = {
     "list": SubVerb(configure_list, run_list, help="list containers and their nodes"),
     "load": SubVerb(configure_load, run_load, help="load a component into a running container"),
-    "standalone": SubVerb(configure_standalone, run_standalone, help="run a component in a container of its own"),
+    "standalone": SubVerb(configure_standalone, run_standalone, help="run a component in its own container"),
     "types": SubVerb(configure_types, run_types, help="list the components that come with Linkwright"),
     "unload": SubVerb(configure_unload, run_unload, help="unload nodes from a running container"),
 }

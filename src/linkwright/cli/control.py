@@ -48,7 +48,7 @@ def _common(parser: argparse.ArgumentParser) -> None:
 
 
 def _controller(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("controller_name", metavar="CONTROLLER", help="its name")
+    parser.add_argument("controller_name", metavar="CONTROLLER", help="the name of the controller")
     _common(parser)
 
 
@@ -79,7 +79,7 @@ def _fail(text: str) -> int:
 def _configure_list_controllers(parser: argparse.ArgumentParser) -> None:
     for name in _SECTIONS:
         parser.add_argument(f"--{name.replace('_', '-')}", action="store_true", help="also print these interfaces")
-    parser.add_argument("-v", "--verbose", action="store_true", help="print all of them")
+    parser.add_argument("-v", "--verbose", action="store_true", help="also print all of these interfaces")
     _common(parser)
 
 
@@ -208,7 +208,7 @@ def _state(word: str) -> str:
 
 
 def _configure_load(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("controller_name", metavar="CONTROLLER", help="its name")
+    parser.add_argument("controller_name", metavar="CONTROLLER", help="the name of the controller")
     parser.add_argument(
         "--set-state",
         type=_state,
@@ -252,7 +252,7 @@ async def _unload(arguments: argparse.Namespace, ask: Ask) -> int:
 
 
 def _configure_set_state(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("controller_name", metavar="CONTROLLER", help="its name")
+    parser.add_argument("controller_name", metavar="CONTROLLER", help="the name of the controller")
     parser.add_argument("state", type=_state, choices=("unconfigured", "inactive", "active"), help="the target state")
     _common(parser)
 
@@ -318,7 +318,7 @@ async def _reload(arguments: argparse.Namespace, ask: Ask) -> int:
 
 
 def _configure_set_hardware(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("hardware_component_name", metavar="HARDWARE", help="its name")
+    parser.add_argument("hardware_component_name", metavar="HARDWARE", help="the name of the hardware component")
     parser.add_argument("state", choices=("unconfigured", "inactive", "active"), help="the target state")
     _common(parser)
 

@@ -16,7 +16,12 @@ _ANSWERS = {
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("verb", metavar="{start,status,stop}", choices=_ANSWERS, help="no effect")
+    parser.add_argument(
+        "verb",
+        metavar="{start,status,stop}",
+        choices=_ANSWERS,
+        help="accepted for compatibility with ros2; has no effect",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -24,7 +24,7 @@ _KEPT = ("lights", "colours", "lens")
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("worlds", metavar="WORLD", nargs="+", help="files in SDF, or names of worlds")
+    parser.add_argument("worlds", metavar="WORLD", nargs="+", help="SDF files, or names of worlds")
     parser.add_argument("--output", "-o", metavar="DIR", required=True, help="the folder of the dataset")
     parser.add_argument(
         "--images",
@@ -52,28 +52,28 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         action="append",
         default=[],
-        help="a robot or model to put into each world, URDF, xacro or SDF; may be repeated",
+        help="the URDF, xacro or SDF file of a robot or model to add to each world; may be repeated",
     )
     parser.add_argument(
         "--splits",
         metavar="TRAIN,VAL,TEST",
         type=_splits,
         default=(0.8, 0.1, 0.1),
-        help="the shares of images (default: 0.8,0.1,0.1)",
+        help="the fractions of images for training, validation and testing (default: 0.8,0.1,0.1)",
     )
     parser.add_argument(
         "--copies",
         metavar="N",
         type=unsigned_int,
         default=3,
-        help="the least number of objects of each class (default: 3)",
+        help="the minimum number of objects of each class (default: 3)",
     )
     parser.add_argument(
         "--most",
         metavar="N",
         type=positive_int,
         default=8,
-        help="the largest number of objects placed in an image (default: 8)",
+        help="the maximum number of objects placed in an image (default: 8)",
     )
     parser.add_argument(
         "--distractors",
@@ -87,21 +87,21 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="WHAT",
         type=_kept,
         default=(),
-        help="properties to keep as in the world: lights, colours, lens (no blur, no noise), separated by commas",
+        help="properties not to randomize: lights, colours, lens (no blur, no noise), separated by commas",
     )
     parser.add_argument(
         "--min-size",
         metavar="PIXELS",
         type=unsigned_int,
         default=12,
-        help="ignore objects whose box has a shorter side below this (default: 12)",
+        help="ignore objects whose bounding box has a side shorter than this many pixels (default: 12)",
     )
     parser.add_argument(
         "--min-visible",
         metavar="SHARE",
         type=_share,
         default=0.5,
-        help="ignore objects with a smaller visible share (default: 0.5)",
+        help="ignore objects that are visible by less than this fraction (default: 0.5)",
     )
     parser.add_argument(
         "--workers", metavar="N", type=positive_int, help="the number of processes (default: one for each processor)"
@@ -153,7 +153,7 @@ def run(arguments: argparse.Namespace) -> int:
     print(localized(phrase("{images} in {folder}", images=images, folder=display_path(path))))
     if made.interrupted:
         message = phrase(
-            "{done} of {count} images were made; the dataset is complete, `--append` adds more",
+            "{done} of {count} images were made; the dataset can be used, and `--append` adds more images",
             done=made.added,
             count=arguments.images,
         )

@@ -36,7 +36,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         action="append",
         default=[],
-        help="an .rviz file whose Fixed Frame to check too",
+        help="an .rviz file whose Fixed Frame is also checked",
     )
     parser.add_argument("--fixed-frame", metavar="FRAME", action="append", default=[], help="a Fixed Frame to check")
     parser.add_argument(
@@ -122,7 +122,7 @@ def _summary(seen: Observation, findings: int) -> str:
         ]
     )
     if not findings:
-        return localized(phrase("All is well: {counts}", counts=counts))
+        return localized(phrase("No problems found: {counts}", counts=counts))
     found = counted("{count} finding", "{count} findings", findings)
     return localized(phrase("{findings}; {counts}", findings=found, counts=counts))
 

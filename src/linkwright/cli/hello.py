@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument(
-        "-t", "--topic", default="/canyouhearme", help="the topic to greet others on (default: %(default)s)"
+        "-t", "--topic", default="/canyouhearme", help="the topic to publish greetings on (default: %(default)s)"
     )
     parser.add_argument(
         "-ep",

@@ -172,7 +172,7 @@ def _refusals(refused: Mapping[str, str], robot: Robot) -> list[Diagnostic]:
                 "INR211",
                 phrase("<inertial> of link '{name}' is not written: {why}", name=name, why=why),
                 element.span() if element else None,
-                hint=phrase("put the block printed above into the link, or expressions with the same values"),
+                hint=phrase("add the block printed above to the link, or write expressions with the same values"),
                 source=element.source if element else None,
             )
         )

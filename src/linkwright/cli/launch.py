@@ -38,7 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="run without a terminal, which would also send signals to the processes",
     )
-    parser.add_argument("-d", "--debug", action="store_true", help="log in detail what the launcher does")
+    parser.add_argument("-d", "--debug", action="store_true", help="print detailed log messages of the launch system")
     parser.add_argument(
         "-a",
         "--show-all-subprocesses-output",

@@ -63,10 +63,10 @@ def configure_get(parser: argparse.ArgumentParser) -> None:
         "--from",
         dest="source",
         metavar="SOURCE",
-        help="a file or folder that contains it, or the address of a mirror (default: its publisher's address)",
+        help="a file or folder that contains the model, or the address of a mirror (default: the publisher's address)",
     )
     parser.add_argument(
-        "--to", metavar="FOLDER", type=Path, help="store it in this folder, which Linkwright does not search"
+        "--to", metavar="FOLDER", type=Path, help="store the model in this folder, which Linkwright does not search"
     )
 
 
@@ -130,7 +130,7 @@ def run_path(arguments: argparse.Namespace) -> int:
 
 def configure_check(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("names", metavar="MODEL", nargs="*", help="their names (default: all downloaded models)")
+    parser.add_argument("names", metavar="MODEL", nargs="*", help="the models' names (default: all downloaded models)")
 
 
 def run_check(arguments: argparse.Namespace) -> int:
@@ -173,7 +173,7 @@ def run_remove(arguments: argparse.Namespace) -> int:
 
 
 def _add_name(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("name", metavar="MODEL", help="its name, as `linkwright models list` prints it")
+    parser.add_argument("name", metavar="MODEL", help="the model's name, as `linkwright models list` prints it")
 
 
 VERBS = {

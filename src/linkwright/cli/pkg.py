@@ -247,7 +247,7 @@ def _xml(arguments: argparse.Namespace) -> int:
                 phrase(
                     "package.xml of '{package}' has no element <{tag}>", package=arguments.package, tag=arguments.tag
                 ),
-                hint=did_you_mean(arguments.tag, names) or phrase("available: {names}", names=joined(names)),
+                hint=did_you_mean(arguments.tag, names) or phrase("choose from {names}", names=joined(names)),
             )
         )
     for element in found:

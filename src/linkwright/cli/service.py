@@ -49,7 +49,7 @@ _SERVICES = Kind(
 def configure_list(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    add_types_argument(parser, types_help="show the type of each service beside it")
+    add_types_argument(parser, types_help="also print the type of each service")
     add_count_argument(parser, "service")
     add_hidden_argument(parser, "--include-hidden-services", hidden_help="consider hidden services as well")
 
@@ -179,7 +179,9 @@ def _check_type(session: Session, name: str, asked: str) -> None:
         message = phrase(
             "service '{name}' is of type {types}, not {asked}", name=name, types=", ".join(types), asked=asked
         )
-        raise LinkwrightError(Diagnostic("CLI428", message, hint=phrase("call it with {types}", types=types[0])))
+        raise LinkwrightError(
+            Diagnostic("CLI428", message, hint=phrase("call the service with the type {types}", types=types[0]))
+        )
 
 
 def configure_echo(parser: argparse.ArgumentParser) -> None:

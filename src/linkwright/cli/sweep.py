@@ -48,7 +48,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out",
         metavar="TABLE",
-        help="the table, .csv or .parquet; the summary goes beside it (default: the name of FILE, .csv)",
+        help="the file of the table, .csv or .parquet; the summary is written beside it (default: the "
+        "name of FILE, with .csv)",
     )
     parser.add_argument("--resume", action="store_true", help="resume an interrupted sweep")
     parser.add_argument("--rerun", metavar="ROW", type=positive_int, help="run one row again, and print its results")

@@ -24,7 +24,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--junit-xml", metavar="REPORT", help="write a JUnit report for CI servers to this file")
     parser.add_argument("--package-name", metavar="NAME", help="the package name in the report")
-    parser.add_argument("-v", "--verbose", action="store_true", help="log in detail what the launcher does")
+    parser.add_argument("-v", "--verbose", action="store_true", help="print detailed log messages of the launch system")
 
 
 def run(arguments: argparse.Namespace) -> int:

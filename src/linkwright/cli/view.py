@@ -50,8 +50,8 @@ def add_viewer_options(parser: argparse.ArgumentParser) -> None:
         metavar="SIZE",
         type=size,
         default=DEFAULT_HISTORY,
-        help="memory for the messages of the last minutes, which the page can go back to, such as 1GB; 0 "
-        "disables it (default: 256MB)",
+        help="memory for the messages of the last minutes, which the page can replay, such as 1GB; 0 "
+        "disables replay (default: 256MB)",
     )
 
 

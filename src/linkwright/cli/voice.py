@@ -130,7 +130,9 @@ class _Trial:
 def configure_enrol(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("word", metavar="WORD", help="the word or phrase, as in the commands")
-    parser.add_argument("files", metavar="WAV", nargs="+", help="recordings that contain it once each; three are best")
+    parser.add_argument(
+        "files", metavar="WAV", nargs="+", help="recordings that each contain the word once; three are best"
+    )
     _add_file(parser)
 
 
@@ -220,7 +222,9 @@ def _state(name: str, language: str, text: str) -> Phrase:
 
 
 def _add_file(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--file", metavar="FILE", type=Path, help="a file of words to use instead of the user's own")
+    parser.add_argument(
+        "--file", metavar="FILE", type=Path, help="the file of enrolled words to use instead of the user's own"
+    )
 
 
 def _path(arguments: argparse.Namespace) -> Path:
@@ -245,10 +249,10 @@ def _write(words: Words, path: Path) -> None:
 
 VERBS = {
     "try": SubVerb(configure_try, run_try, help="print the words and commands that an engine recognizes in recordings"),
-    "enrol": SubVerb(configure_enrol, run_enrol, help="learn a word from recordings of it"),
+    "enrol": SubVerb(configure_enrol, run_enrol, help="enrol a word from recordings of it"),
     "words": SubVerb(configure_words, run_words, help="list the enrolled words"),
     "forget": SubVerb(configure_forget, run_forget, help="remove an enrolled word"),
-    "engines": SubVerb(configure_engines, run_engines, help="list the engines, and what they still need"),
+    "engines": SubVerb(configure_engines, run_engines, help="list the engines and their missing requirements"),
 }
 
 

@@ -16,7 +16,9 @@ from linkwright.diagnostics.translation import localized
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("--json", action="store_true", help="print the kind, name and path of each as a JSON list")
+    parser.add_argument(
+        "--json", action="store_true", help="print the kind, name and path of each world and model as a JSON list"
+    )
 
 
 def run_list(arguments: argparse.Namespace) -> int:

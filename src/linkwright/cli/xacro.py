@@ -63,7 +63,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "-i",
         "--inorder",
         action="store_true",
-        help="process the file in reading order; this is always the case",
+        help="process the file in reading order, as is always done",
     )
     parser.add_argument(
         "-q",

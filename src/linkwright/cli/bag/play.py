@@ -41,7 +41,7 @@ def configure_play(parser: argparse.ArgumentParser) -> None:
         default="",
         help="do not play topics whose names match this regular expression",
     )
-    parser.add_argument("-l", "--loop", action="store_true", help="start over at the end, until Ctrl-C")
+    parser.add_argument("-l", "--loop", action="store_true", help="repeat the recording until Ctrl-C")
     parser.add_argument(
         "-m", "--remap", metavar="FROM:=TO", nargs="+", default=[], help="publish topics under other names"
     )
@@ -59,11 +59,16 @@ def configure_play(parser: argparse.ArgumentParser) -> None:
         metavar="TOPIC",
         nargs="+",
         default=[],
-        help="publish the time before each message of these topics",
+        help="publish /clock before each message of these topics",
     )
-    parser.add_argument("--clock-topics-all", action="store_true", help="publish the time before each message")
+    parser.add_argument("--clock-topics-all", action="store_true", help="publish /clock before each message")
     parser.add_argument(
-        "-d", "--delay", metavar="SECONDS", type=_not_negative, default=0.0, help="wait before each pass"
+        "-d",
+        "--delay",
+        metavar="SECONDS",
+        type=_not_negative,
+        default=0.0,
+        help="wait this long before each playback of the recording",
     )
     parser.add_argument(
         "--start-offset",
@@ -73,11 +78,19 @@ def configure_play(parser: argparse.ArgumentParser) -> None:
         help="start at this offset into the recording",
     )
     parser.add_argument(
-        "--playback-duration", metavar="SECONDS", type=_not_negative, help="stop after this much of the recording"
+        "--playback-duration",
+        metavar="SECONDS",
+        type=_not_negative,
+        help="play only this many seconds of the recording",
     )
     until = parser.add_mutually_exclusive_group()
     until.add_argument("--playback-until-sec", metavar="SECONDS", type=float, help="stop at this time since the epoch")
-    until.add_argument("--playback-until-nsec", metavar="NANOSECONDS", type=int, help="the same in nanoseconds")
+    until.add_argument(
+        "--playback-until-nsec",
+        metavar="NANOSECONDS",
+        type=int,
+        help="stop at this time since the epoch, in nanoseconds",
+    )
     parser.add_argument("-p", "--start-paused", action="store_true", help="start paused; the space key resumes")
     parser.add_argument(
         "--wait-for-all-acked",

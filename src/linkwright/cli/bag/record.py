@@ -109,7 +109,7 @@ def configure_record(parser: argparse.ArgumentParser) -> None:
         metavar="BYTES",
         type=_count,
         default=_CACHE_SIZE,
-        help="the memory of --snapshot-mode, default 100 MiB; otherwise without effect",
+        help="the memory for --snapshot-mode, default 100 MiB; it has no effect without that option",
     )
     parser.add_argument(
         "--snapshot-mode",

@@ -107,7 +107,7 @@ def run_reindex(arguments: argparse.Namespace) -> int:
 def configure_list(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("kind", metavar="KIND", choices=_PLUGINS, help="storage, converter, compressor or decompressor")
-    parser.add_argument("-v", "--verbose", action="store_true", help="describe each entry too")
+    parser.add_argument("-v", "--verbose", action="store_true", help="also describe each entry")
 
 
 def run_list(arguments: argparse.Namespace) -> int:

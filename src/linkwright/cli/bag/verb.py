@@ -16,7 +16,7 @@ def configure_info(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("bag", metavar="BAG", help="the folder of a recording, or one .mcap or .db3 file")
     add_storage_argument(parser)
-    parser.add_argument("-t", "--topic-name", action="store_true", help="only the names of the topics")
+    parser.add_argument("-t", "--topic-name", action="store_true", help="print only the names of the topics")
 
 
 def run_info(arguments: argparse.Namespace) -> int:
@@ -35,7 +35,7 @@ VERBS = {
     "list": SubVerb(
         rewrite.configure_list, rewrite.run_list, help="list the storage formats, converters and compressions"
     ),
-    "play": SubVerb(play.configure_play, play.run_play, help="publish the messages of a recording again"),
+    "play": SubVerb(play.configure_play, play.run_play, help="publish the messages of a recording"),
     "record": SubVerb(record.configure_record, record.run_record, help="record topics until Ctrl-C"),
     "reindex": SubVerb(
         rewrite.configure_reindex, rewrite.run_reindex, help="rebuild a recording's metadata from its files"

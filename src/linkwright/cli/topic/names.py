@@ -35,7 +35,7 @@ _INFINITE_NS = 0x7FFFFFFF_FFFFFFFF
 def configure_list(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    add_types_argument(parser, types_help="show the type of each topic beside it")
+    add_types_argument(parser, types_help="also print the type of each topic")
     add_count_argument(parser, "topic")
     add_hidden_argument(parser, "--include-hidden-topics", hidden_help="consider hidden topics as well")
     parser.add_argument(

@@ -57,7 +57,7 @@ def configure_pub(parser: argparse.ArgumentParser) -> None:
         "--max-wait-time-secs",
         metavar="SECONDS",
         type=positive_float,
-        help="the longest time to wait for subscriptions",
+        help="the maximum time to wait for subscriptions",
     )
     parser.add_argument(
         "--keep-alive",

@@ -31,16 +31,24 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="FILE|NAME",
         help="an ONNX file, or the name of a detector: things (default), colours, aruco, apriltag, qr, line",
     )
-    parser.add_argument("--labels", metavar="FILE", type=Path, help="names of the network's classes, one in each line")
+    parser.add_argument(
+        "--labels", metavar="FILE", type=Path, help="a file with the names of the network's classes, one per line"
+    )
     parser.add_argument(
         "--dictionary", metavar="NAME", help="which markers aruco and apriltag look for, such as 6X6_250"
     )
-    parser.add_argument("--threshold", metavar="SCORE", type=fraction, default=0.5, help="the least score, default 0.5")
+    parser.add_argument("--threshold", metavar="SCORE", type=fraction, default=0.5, help="the minimum score, default 0.5")
     parser.add_argument(
-        "--iou", metavar="SHARE", type=fraction, default=0.5, help="how much boxes of a class may overlap, default 0.5"
+        "--iou",
+        metavar="SHARE",
+        type=fraction,
+        default=0.5,
+        help="the maximum overlap of boxes of one class, as intersection over union, default 0.5",
     )
-    parser.add_argument("--classes", metavar="NAME", action="append", help="only this class; may be given again")
-    parser.add_argument("--device", default="cpu", help="where a network runs: cpu (the default), or cuda:0")
+    parser.add_argument("--classes", metavar="NAME", action="append", help="report only this class; may be repeated")
+    parser.add_argument(
+        "--device", default="cpu", help="the device on which a network runs: cpu (the default), or cuda:0"
+    )
     parser.add_argument(
         "-o", "--output", metavar="FOLDER", type=Path, help="write the images with boxes to this folder"
     )
@@ -61,7 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
     options = DetectorOptions(labels=arguments.labels, device=arguments.device, settings=settings)
     detector = make_detector(arguments.model or DEFAULT_DETECTOR, options)
     if settings and not isinstance(detector, MarkerDetector):
-        hint = phrase("only 'aruco' and 'apriltag' have it: leave it out")
+        hint = phrase("only 'aruco' and 'apriltag' have this option: leave it out")
         raise bad_setting("dictionary", arguments.dictionary, hint)
     for note in detector.notes:
         print(note, file=sys.stderr)
@@ -91,8 +99,10 @@ def run(arguments: argparse.Namespace) -> int:
 def _known_classes(detector: Detector, wanted: list[str]) -> frozenset[str]:
     for name in wanted:
         if detector.names and name not in detector.names:
-            message = phrase("the detector knows no class '{name}'", name=name)
-            hint = did_you_mean(name, detector.names) or phrase("it knows {names}", names=", ".join(detector.names))
+            message = phrase("the detector does not know the class '{name}'", name=name)
+            hint = did_you_mean(name, detector.names) or phrase(
+                "its classes are {names}", names=", ".join(detector.names)
+            )
             raise LinkwrightError(Diagnostic("VISION111", message, hint=hint))
     return frozenset(wanted)
 

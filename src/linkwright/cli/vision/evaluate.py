@@ -14,9 +14,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("model", metavar="MODEL", help="an ONNX file, or the name of a detector")
     parser.add_argument(
-        "dataset", metavar="DATASET", type=Path, help="its folder, as linkwright dataset makes it, or its data.yaml"
+        "dataset",
+        metavar="DATASET",
+        type=Path,
+        help="the folder of the dataset, as `linkwright dataset` writes it, or its data.yaml",
     )
-    parser.add_argument("--split", metavar="NAME", help="train, val or test; default test, or val where there is none")
+    parser.add_argument(
+        "--split", metavar="NAME", help="train, val or test; default test, or val if there is no test split"
+    )
     parser.add_argument("--confusion", action="store_true", help="also print the confusion matrix")
     parser.add_argument("--format", choices=("text", "json"), default="text", help="the output format")
 

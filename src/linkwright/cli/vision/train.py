@@ -23,30 +23,44 @@ _CELL = 32
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument(
-        "dataset", metavar="DATASET", type=Path, help="its folder, as linkwright dataset makes it, or its data.yaml"
+        "dataset",
+        metavar="DATASET",
+        type=Path,
+        help="the folder of the dataset, as `linkwright dataset` writes it, or its data.yaml",
     )
     parser.add_argument(
-        "-o", "--output", metavar="FOLDER", type=Path, default=Path("training"), help="default training"
+        "-o",
+        "--output",
+        metavar="FOLDER",
+        type=Path,
+        default=Path("training"),
+        help="the output folder, default training",
     )
-    parser.add_argument("--name", default="detector", help="the name of the network and its card, default detector")
-    parser.add_argument("--epochs", type=positive_int, default=40, help="passes over all images, default 40")
+    parser.add_argument(
+        "--name", default="detector", help="the file name of the network and of its model card, default detector"
+    )
+    parser.add_argument("--epochs", type=positive_int, default=40, help="the number of epochs, default 40")
     parser.add_argument(
         "--whole-epochs",
         metavar="N",
         type=unsigned_int,
         default=2,
-        help="the number of last epochs with full images instead of parts, default 2",
+        help="the number of final epochs that use full images instead of crops, default 2",
     )
-    parser.add_argument("--batch", type=positive_int, default=16, help="images in a step, default 16")
-    parser.add_argument("--rate", type=positive_float, default=0.002, help="the highest learning rate, default 0.002")
+    parser.add_argument("--batch", type=positive_int, default=16, help="the batch size, default 16")
+    parser.add_argument("--rate", type=positive_float, default=0.002, help="the maximum learning rate, default 0.002")
     parser.add_argument(
-        "--size", metavar="WIDTHxHEIGHT", type=_size, default=(480, 384), help="the size of its input, default 480x384"
+        "--size",
+        metavar="WIDTHxHEIGHT",
+        type=_size,
+        default=(480, 384),
+        help="the input size of the network, default 480x384",
     )
     parser.add_argument(
         "--channels",
         type=positive_int,
         default=8,
-        help="the channels of its first layer; the others have multiples, default 8",
+        help="the number of channels of the first layer; the other layers have multiples of it, default 8",
     )
     parser.add_argument("--seed", type=unsigned_int, default=0, help="the random seed, default 0")
     parser.add_argument("--threads", type=positive_int, default=2, help="the number of CPU threads, default 2")
@@ -60,21 +74,21 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--device",
         choices=("auto", "cpu"),
         default="auto",
-        help="where it learns: auto (default) takes a GPU that PyTorch sees by CUDA",
+        help="the device for training: auto (default) uses a CUDA GPU if PyTorch finds one",
     )
     parser.add_argument(
         "--weights",
         metavar="FILE",
         help="start from this network instead of random weights: things, or an ONNX file that this command wrote",
     )
-    parser.add_argument("--resume", action="store_true", help="resume after the last epoch in the folder")
+    parser.add_argument("--resume", action="store_true", help="resume after the last epoch saved in the output folder")
     parser.add_argument(
         "--held-out",
         metavar="DATASET",
         type=Path,
         action="append",
         default=[],
-        help="evaluate the result on this dataset, too; may be repeated",
+        help="also evaluate the result on this dataset; may be repeated",
     )
 
 
@@ -118,7 +132,7 @@ def _report(epoch: Epoch, last: int) -> None:
     boxes, scores = (f"{loss:.3f}" for loss in epoch.losses)
     line = localized(
         phrase(
-            "epoch {number} of {last}: loss of boxes {boxes}, of scores {scores}",
+            "epoch {number} of {last}: box loss {boxes}, score loss {scores}",
             number=epoch.number,
             last=last,
             boxes=boxes,
