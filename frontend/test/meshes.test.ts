@@ -108,14 +108,14 @@ describe("STL", () => {
 describe("vertices that are no numbers", () => {
   it("are counted, and triangles with them are not drawn", async () => {
     const some = await read("stl", `solid\n${FACET}${facet("nan 0 0", "5 inf 0", "0 1 0")}endsolid`);
-    expect(some.problem).toBe("2 vertices are not finite numbers; 1 triangles with them are left out");
+    expect(some.problem).toBe("2 vertices have coordinates that are not finite numbers; 1 triangles with them are left out");
     expect(positions(some)).toEqual([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
-    expect(await error("stl", binaryStl(2, 2, "", NaN))).toBe("none of its triangles can be drawn: 2 vertices are not finite numbers");
+    expect(await error("stl", binaryStl(2, 2, "", NaN))).toBe("none of its triangles can be drawn: 2 vertices have coordinates that are not finite numbers");
   });
 
   it("are left out of faces that others share", async () => {
     const some = await read("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nf 1 2 3\nf 1 2 4\n");
-    expect(some.problem).toBe("1 vertices are not finite numbers; 1 triangles with them are left out");
+    expect(some.problem).toBe("1 vertices have coordinates that are not finite numbers; 1 triangles with them are left out");
     const { BufferAttribute, BufferGeometry } = await import("three");
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(new Float32Array([9, 9, 9, 1, 0, 0, NaN, 1, 0, 0, 0, 1]), 3));

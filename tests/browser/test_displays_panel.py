@@ -133,7 +133,7 @@ def test_the_filter_finds_properties(grouped):
     page.wait_for_function("() => document.querySelectorAll('.displays-panel .row').length === 2")
     assert page.locator(".displays-panel .row-title").all_inner_texts() == ["Grid", "Cell Size"]
     page.get_by_label("Filter displays and properties").fill("nothing like that")
-    page.get_by_text("No display or property has this in its name.").wait_for()
+    page.get_by_text("No name of a display or property contains this text.").wait_for()
 
 
 def test_a_menu_of_each_display(grouped):

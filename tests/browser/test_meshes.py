@@ -69,7 +69,7 @@ BROKEN = {
     "short.stl": (b"\0" * 80 + struct.pack("<I", 40_000_000) + b"\0" * 600, "declares 40 000 000 triangles and has 12"),
     "text.stl": (b"solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n", "broken at line 4: 'zero'"),
     "nothing.stl": (b"solid nothing\n", "has no triangles"),
-    "nan.stl": (STL_OF_NAN, "1 vertices are not finite numbers"),
+    "nan.stl": (STL_OF_NAN, "1 vertices have coordinates that are not finite numbers"),
     "empty.dae": (b"", "the file is empty"),
     "cut.dae": (b"<?xml version='1.0'?>\n<COLLADA>\n<library_geometries>", "not valid XML, line 3"),
     "other.dae": (b"<robot name='r'/>", "its root is <robot>"),

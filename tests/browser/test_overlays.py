@@ -202,7 +202,7 @@ def test_a_description_that_takes_the_place_of_another_is_told(live, open_page):
     other = viewer.run(lambda: viewer.node.graph.create_node("other"))
     publisher = viewer.run(lambda: other.create_publisher(String, "/robot_description", DESCRIPTION_QOS))
     viewer.run(lambda: publisher.publish(String(data=WIDE.replace('"wide"', '"narrow"'))))
-    notice.get_by_text("The description is now that of another node").wait_for()
+    notice.get_by_text("Another node now publishes the description").wait_for()
     becomes(lambda: "Robot The description of /other is shown" in notice.inner_text(), True)
 
 

@@ -215,5 +215,5 @@ def test_a_pointer_of_git_lfs_is_named_as_such(index, robot):
     (robot / "meshes" / "arm.dae").write_bytes(b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 9\n")
     located = index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES)
     assert located.url is None
-    assert "pointer of Git LFS" in (located.problem or "")
+    assert "Git LFS pointer" in (located.problem or "")
     assert "git lfs pull" in (located.problem or "")

@@ -194,7 +194,7 @@ async def test_what_cannot_be_read_is_said_without_where_it_lay(scratch: Path, d
 async def test_why_not_is_said_in_the_language_of_the_page():
     async with host() as (_, sender):
         announced = {"name": "x", "files": [{"name": "x.txt", "size": 1}]}
-        for language, words in (("en", "is not a file of a recording"), ("zh", "不是录制")):
+        for language, words in (("en", "is not a recording file"), ("zh", "不是录制")):
             _, answer = await sender.ask("POST", "recordings", language, json=announced)
             assert words in answer["problem"], answer
 
@@ -226,7 +226,7 @@ async def test_a_recording_that_is_cut_off_is_shown_and_the_page_says_so(tmp_pat
         status, answer = await sender.send("x", {name: files[name][:-100]})
         assert status == 200, answer
         async with seen(sender, answer["recording"]) as client:
-            assert "has no end" in (await client.until("playhead"))["problem"]
+            assert "is truncated" in (await client.until("playhead"))["problem"]
 
 
 @skipping

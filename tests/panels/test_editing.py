@@ -208,7 +208,7 @@ async def test_a_page_of_another_machine_is_told_why_nothing_is_written(
     async with world() as scene, page(scene.viewer) as client:
         describe(scene, file)
         await client.until("description_changed")
-        assert "open on the files' machine" in (await parts(client, "mast"))["why_not"]
+        assert "open on the machine with the files" in (await parts(client, "mast"))["why_not"]
         assert (await preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT109"
         assert (await ask(client, "undo_edit", "edit_written"))["refusal"]["code"] == "EDIT109"
     assert content(file) == ROBOT

@@ -114,7 +114,7 @@ async def test_a_page_is_told_of_topics_whose_type_nobody_knows(tmp_path):
     async with shown(tmp_path, Point="Paint", float64="flaot64") as made, page(made.viewer) as client:
         message = await client.until("playhead", playing=True)
         assert message["problem"] == (
-            "topics of 'drive' are left out, for the definitions of their types are missing or broken: "
+            "topics of 'drive' are left out because the definitions of their types are missing or invalid: "
             "/p (geometry_msgs/msg/PaintStamped)"
         )
         await arrived(client, "tip", 3)

@@ -124,29 +124,29 @@ def test_no_bytes_upset_the_reader_of_rvl_streams(data, pixels):
         ("jpeg", header() + png(MILLIMETRES), "The format of the depth image is 'jpeg'; supported are 16UC1"),
         ("16UC1; compressedDepth zip", header() + png(MILLIMETRES), "supported are 16UC1, mono16 and 32FC1"),
         ("8UC1; compressedDepth png", header() + png(MILLIMETRES), "The format of the depth image is '8UC1;"),
-        ("16UC1; compressedDepth png", header()[:7], "has 7 bytes, no more than its header"),
+        ("16UC1; compressedDepth png", header()[:7], "has 7 bytes, and no data after its header"),
         ("16UC1; compressedDepth png", header() + b"depths", "neither a PNG nor a JPEG"),
         ("16UC1; compressedDepth png", header() + png(MILLIMETRES)[:50], "The PNG cannot be read: "),
         ("16UC1; compressedDepth png", header() + png(MILLIMETRES)[:20], "The PNG cannot be read: "),
         (
             "16UC1; compressedDepth png",
             header() + png(MILLIMETRES, says=(60000, 60000)),
-            "The PNG has 60000 x 60000 pixels; no more than 16777216 are unpacked",
+            "The PNG has 60000 x 60000 pixels; at most 16777216 are supported",
         ),
         (
             "16UC1; compressedDepth png",
             header() + png(MILLIMETRES.astype(np.uint8)),
             "not a PNG of 16 bits and one channel",
         ),
-        ("32FC1; compressedDepth png", header(0.0, 1.0) + png(MILLIMETRES), "no scale for its depths: 0, 1"),
-        ("32FC1; compressedDepth png", header(np.nan, 1.0) + png(MILLIMETRES), "no scale for its depths: nan, 1"),
+        ("32FC1; compressedDepth png", header(0.0, 1.0) + png(MILLIMETRES), "no valid scale of the depths: 0, 1"),
+        ("32FC1; compressedDepth png", header(np.nan, 1.0) + png(MILLIMETRES), "no valid scale of the depths: nan, 1"),
         ("16UC1; compressedDepth rvl", header() + b"1234567", "ends before its size"),
         (
             "16UC1; compressedDepth rvl",
             header() + sized_rvl(MILLIMETRES, says=(4_000_000_000, 4_000_000_000)),
-            "gives 4000000000 x 4000000000 pixels; 1 to 16777216 are unpacked",
+            "declares 4000000000 x 4000000000 pixels; 1 to 16777216 are supported",
         ),
-        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETRES, says=(0, 7)), "gives 0 x 7"),
+        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETRES, says=(0, 7)), "declares 0 x 7"),
         (
             "16UC1; compressedDepth rvl",
             header() + sized_rvl(MILLIMETRES)[:-4],
@@ -268,7 +268,7 @@ async def test_an_image_display_shows_depths_as_greys():
         assert contents(display)[0].fields["data"].tolist() == [0, 63, 127]
         publisher.publish(packed("16UC1; compressedDepth rvl", header() + bytes(8)))
         await w.settle()
-        text = "The header of the RVL depth image gives 0 x 0 pixels; 1 to 16777216 are unpacked"
+        text = "The header of the RVL depth image declares 0 x 0 pixels; 1 to 16777216 are supported"
         assert w.status("Image")["Image"] == ("error", text)
 
 

@@ -128,7 +128,7 @@ class MeshIndex:
         except ValueError:
             return Located(None, phrase("its path contains an invalid character"))
         if not path.is_file():
-            return Located(None, phrase("no file '{path}'", path=path))
+            return Located(None, phrase("there is no file '{path}'", path=path))
         if path.suffix.lower() not in types:
             known = ", ".join(sorted(suffix[1:].upper() for suffix in types))
             return Located(

@@ -218,7 +218,7 @@ class WebServer:
         """Prove to a page that was let in before that this is the program that it knows."""
         proof = self._gate.proof(request.query.get("nonce", ""))
         if proof is None:
-            return web.Response(status=400, text="This address is for the page's question.\n")
+            return web.Response(status=400, text="This address only answers the page.\n")
         return web.Response(text=proof)
 
     async def _page_file(self, request: web.Request) -> web.StreamResponse:
@@ -509,7 +509,7 @@ def listen(host: str, port: int | None) -> socket.socket:
     try:
         family, _, _, _, address = socket.getaddrinfo(host, 0, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
     except (OSError, UnicodeError):
-        hint = phrase("use 127.0.0.1, or 0.0.0.0 to be reached from other machines")
+        hint = phrase("use 127.0.0.1, or 0.0.0.0 to accept connections from other machines")
         message = phrase("'{host}' is not a name or address of this machine", host=host)
         raise LinkwrightError(Diagnostic("VIEW103", message, hint=hint)) from None
     candidates = [port] if port is not None else [*range(DEFAULT_PORT, DEFAULT_PORT + _TRIES), 0]
@@ -545,14 +545,14 @@ def _listen_at(family: int, address: tuple[str | int, int]) -> socket.socket:
     except (OSError, OverflowError) as error:
         listener.close()
         if isinstance(error, OverflowError):
-            raise OSError(errno.EINVAL, phrase("a port is a number from 0 to 65535")) from None
+            raise OSError(errno.EINVAL, phrase("give a port from 0 to 65535")) from None
         raise
     return listener
 
 
 def _cannot_listen(host: str, port: int, error: OSError) -> Diagnostic:
     if error.errno == errno.EADDRINUSE:
-        hint = phrase("choose another with '--port', or omit '--port' to use the next free one")
+        hint = phrase("choose another port with '--port', or omit '--port' to use the next free one")
         return Diagnostic("VIEW101", phrase("port {port} of '{host}' is in use", port=port, host=host), hint=hint)
     return Diagnostic(
         "VIEW102",

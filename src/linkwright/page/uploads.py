@@ -131,20 +131,26 @@ class Uploads:
         wrong = next((name for name in names if not _FILE.fullmatch(name)), None)
         if wrong is not None:
             return _refused(
-                request, phrase("'{name}' is not a file of a recording: these end in .mcap or .db3", name=wrong[:100])
+                request,
+                phrase("'{name}' is not a recording file: its name must end in .mcap or .db3", name=wrong[:100]),
             )
         if not names or len(names) != len(set(names)) or len(names) > _MOST_FILES:
-            return _refused(request, phrase("the dropped files contain no recording: its files end in .mcap or .db3"))
+            return _refused(
+                request, phrase("the dropped files contain no recording: drop files that end in .mcap or .db3")
+            )
         if (
             not _NAME.fullmatch(announced.name)
             or announced.name in _DOTS
             or any(file.size < 0 for file in announced.files)
         ):
-            return web.Response(status=400, text="A name without slashes, and sizes.\n")
+            return web.Response(status=400, text="Give a name without slashes, and the sizes.\n")
         if len(self._uploads) >= _MOST_AT_ONCE:
             return _refused(
                 request,
-                phrase("{count} other recordings are being uploaded: wait for one of them", count=_MOST_AT_ONCE),
+                phrase(
+                    "{count} other recordings are being uploaded: wait until one of them is complete",
+                    count=_MOST_AT_ONCE,
+                ),
             )
         scratch = scratch_folder()
         needed = sum(file.size for file in announced.files)
@@ -163,7 +169,7 @@ class Uploads:
         upload = self._uploads.get(request.match_info["key"])
         number = int(request.match_info["number"])
         if upload is None or number >= len(upload.announced.files) or number in upload.received or upload.busy:
-            raise web.HTTPNotFound(text="Nothing of that name is expected.\n")
+            raise web.HTTPNotFound(text="No file with this name is expected.\n")
         file = upload.announced.files[number]
         upload.busy = True
         try:
@@ -178,7 +184,7 @@ class Uploads:
         finally:
             upload.busy = False
         if come != file.size:
-            return web.Response(status=400, text="That is not all of the file.\n")
+            return web.Response(status=400, text="The file is incomplete.\n")
         upload.received.add(number)
         return web.Response(status=204)
 
@@ -186,7 +192,7 @@ class Uploads:
         """Show a recording whose files have arrived."""
         upload = self._uploads.get(request.match_info["key"])
         if upload is None or len(upload.received) != len(upload.announced.files):
-            raise web.HTTPNotFound(text="There is no upload of that name.\n")
+            raise web.HTTPNotFound(text="There is no upload with this name.\n")
         upload.busy = True
         try:
             shown = await self._guests.open(upload.target, upload.scratch)

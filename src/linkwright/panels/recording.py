@@ -135,7 +135,7 @@ class RecordingFeature(PageFeature):
     def _end_at_reset(self, recorder: Recorder) -> None:
         if self._running is not None and self._running.recorder is recorder:
             path = display_path(self._running.writer.path)
-            self._refused([_finding(phrase("recording '{path}' ends here: simulated time was reset", path=path))])
+            self._refused([_finding(phrase("recording to '{path}' stops: simulated time was reset", path=path))])
             self._end()
 
     def _end(self) -> None:
@@ -267,7 +267,7 @@ class RecordingFeature(PageFeature):
         self._timer = None
         if self._running is not None and self._free() < self.left_free:
             full = phrase(
-                "recording '{path}' ends here: the disk has less than {left} MB left",
+                "recording to '{path}' stops: the disk has less than {left} MB left",
                 path=display_path(self._running.writer.path),
                 left=self.left_free // 1_000_000,
             )

@@ -146,7 +146,7 @@ async def test_a_large_map_is_thinned_and_said_so():
     async with shown() as (w, say):
         content = await say(grid(elevation=np.zeros((900, 900)).tolist()))
         assert (content["rows"], content["columns"]) == (450, 450)
-        assert w.status("GridMap")["Size"] == ("warn", "The map is large: one of 2 rows and columns is drawn")
+        assert w.status("GridMap")["Size"] == ("warn", "The map is large: 1 in 2 rows and columns is drawn")
 
 
 @pytest.mark.parametrize(

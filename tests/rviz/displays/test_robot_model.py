@@ -403,7 +403,7 @@ async def test_whose_description_is_shown_is_told_where_two_nodes_publish_one():
         published(made, "third", other)
         await made.settle()
         level, text = made.status("RobotModel")["Topic"]
-        assert (level, "of /third is shown; /first, /second publish" in text) == ("warn", True)
+        assert (level, "of /third is shown; /first, /second also publish" in text) == ("warn", True)
         assert "The description of /third replaces that of /second" in made.logged()
         for node in (first, second):
             node.destroy_node()
@@ -420,10 +420,10 @@ async def test_a_description_changes_hands_with_a_word_after_this_process_has_jo
         second = published(made, "second", ARM.replace('name="arm"', 'name="other"'))
         await made.settle()
         level, text = made.status("RobotModel")["Topic"]
-        assert (level, "of /second is shown; /first publish" in text) == ("warn", True)
+        assert (level, "of /second is shown; /first also publish" in text) == ("warn", True)
         publisher.publish(String(ARM))
         await made.settle()
-        assert "of /first is shown; /second publish" in made.status("RobotModel")["Topic"][1]
+        assert "of /first is shown; /second also publish" in made.status("RobotModel")["Topic"][1]
         second.destroy_node()
 
 
@@ -436,7 +436,7 @@ async def test_a_description_of_a_node_that_left_at_once_is_told_of():
         await made.settle()
         assert made.display("RobotModel").robot.name == "other"
         level, text = made.status("RobotModel")["Topic"]
-        assert (level, "of an unknown node is shown; /first publish" in text) == ("warn", True)
+        assert (level, "of an unknown node is shown; /first also publish" in text) == ("warn", True)
 
 
 async def test_a_description_of_a_node_that_was_started_again_takes_its_place_without_a_word():

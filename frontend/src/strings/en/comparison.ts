@@ -4,7 +4,7 @@ export const comparison = {
   panel: "Compare",
   list: "Differences",
   count: (count: number): string => plural(count, "difference"),
-  same: "The two descriptions are equal.",
+  same: "The two descriptions are identical.",
   old: "Old",
   new: "New",
   showOld: "Show the old robot, translucent",

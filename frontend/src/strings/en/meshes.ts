@@ -13,8 +13,8 @@ export const meshes = {
   missingTextures: (files: string): string => `could not load texture ${files}`,
   missingMaterials: (file: string): string => `could not load material file '${file}'`,
   notNumbers: (vertices: string, triangles: string): string =>
-    `${vertices} vertices are not finite numbers; ${triangles} triangles with them are left out`,
-  onlyNotNumbers: (vertices: string): string => `none of its triangles can be drawn: ${vertices} vertices are not finite numbers`,
+    `${vertices} vertices have coordinates that are not finite numbers; ${triangles} triangles with them are left out`,
+  onlyNotNumbers: (vertices: string): string => `none of its triangles can be drawn: ${vertices} vertices have coordinates that are not finite numbers`,
   stl: {
     short: (bytes: string): string => `it is not an STL file: it does not begin with 'solid', and has ${bytes} where a binary STL has at least 84 bytes`,
     fewer: (said: string, held: string): string => `the STL file declares ${said} triangles and has ${held}`,

@@ -51,7 +51,7 @@ export const shell = {
   tooLarge: (name: string): string => `${name} is too large to be a configuration.`,
   fileName: "File name",
   folder: "Folder",
-  folderUp: "The folder above",
+  folderUp: "The parent folder",
   emptyFolder: "No .rviz files and no folders.",
   openTitle: "Open a configuration",
   saveTitle: "Save the configuration as",

@@ -39,7 +39,7 @@ export const tools = {
     help: "Keys (?)",
     withKey: (name: string, key: string): string => `${name} (${key.toUpperCase()})`,
     unknown: (cls: string): string => `${cls} stays in the file, but Linkwright does not have this tool`,
-    nothing: "None of these tools has settings.",
+    nothing: "None of these tools has properties.",
     names: {
       "rviz_default_plugins/Interact": "Interact",
       "rviz_default_plugins/MoveCamera": "Move Camera",
@@ -91,7 +91,7 @@ export const tools = {
     title: "Keys",
     close: "Close (Esc)",
     toolsTitle: "Tools",
-    toolsNote: "Same key again, or Esc: the default tool",
+    toolsNote: "Press the key again, or Esc, for the default tool",
     viewTitle: "View",
     treeTitle: "Lists and trees",
     generalTitle: "Whole page",

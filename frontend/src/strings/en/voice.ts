@@ -21,7 +21,7 @@ export const voice = {
   commandShort: "E.g. turn left",
   send: "Send",
   sendHint: "Send the command as if you had said it (Enter)",
-  noTextListener: "No voice_commander runs, so text commands are not received.",
+  noTextListener: "No voice_commander is running, so text commands are not received.",
   speak: "Read answers aloud",
   speakHint: "With one of this browser's voices",
   voice: "Voice",
@@ -35,7 +35,7 @@ export const voice = {
   },
   failed: (detail: string): string => `The microphone could not be started: ${detail}`,
   insecure: (host: string, port: string): string =>
-    `Browsers allow the microphone only for pages of this machine or over https, and this page came over http from ${host}. Run "ssh -L ${port}:localhost:${port} ${host}" here and open the address with localhost in place of ${host}, or put an https proxy in front.`,
+    `Browsers allow the microphone only for pages of this machine or over https, and this page was loaded over http from ${host}. Run "ssh -L ${port}:localhost:${port} ${host}" here and open the address with localhost in place of ${host}, or put an https proxy in front.`,
   words: {
     title: "Words",
     hint: "Say each word three times: hold its button, wait a moment, speak, release. Any language or dialect works.",
@@ -63,7 +63,7 @@ export const voice = {
     importHint: "Import the words of a file",
     exportFile: "Export",
     exportHint: "Save the words as a file",
-    keptIn: (file: string): string => `Kept in ${file}`,
+    keptIn: (file: string): string => `Stored in ${file}`,
     good: "Good.",
     quiet: "Recorded, but rather quiet.",
     measured: (level: number, seconds: string): string => `${level} dB, ${seconds} s`,
@@ -78,5 +78,5 @@ export const voice = {
   cut: "The page sent sound faster than real time and was stopped. Press the button again.",
   gaps: "The sound had gaps, because this computer was too busy. Repeat the command if nothing happens.",
   another: "Another page is talking. This page is next.",
-  nobody: "No voice node runs: start one, for example with linkwright launch my_robot_voice voice.launch.py",
+  nobody: "No voice node is running: start one, for example with linkwright launch my_robot_voice voice.launch.py",
 };

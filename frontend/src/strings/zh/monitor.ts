@@ -33,7 +33,7 @@ export const monitor: Strings["monitor"] = {
     sourceHint: "数值的时间取接收时刻，或取消息头的时间戳",
     auto: "自动",
     fixed: "固定",
-    rangeHint: "从显示的最小值到最大值，或您设定的两个值之间",
+    rangeHint: "从显示的最小值到最大值，或你设定的两个值之间",
     lowest: "最小值",
     highest: "最大值",
     choose: "话题与字段，例如 /odom.twist.twist.linear.x",

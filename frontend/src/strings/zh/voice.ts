@@ -41,9 +41,9 @@ export const voice: typeof english = {
   words: {
     title: "词语",
     hint: "每个词语说三遍：按住它的按钮，稍等片刻，说出来，再松开。任何语言或方言都可以。",
-    proposal: "机器人听不懂您说的任何词语。请就在下命令的地方，把词语说给它听。",
+    proposal: "机器人听不懂你说的任何词语。请就在下命令的地方，把词语说给它听。",
     enrolHere: "在此录入",
-    enrolHereHint: "在您现在的位置重新说一遍词语，以便在这里也能识别",
+    enrolHereHint: "在你现在的位置重新说一遍词语，以便在这里也能识别",
     here: (enough: number): string => `请站在下命令的地方，每个词语说 ${enough} 遍。`,
     hereDone: (said: number, all: number): string => `已在此录入 ${said} 个词语，共 ${all} 个。`,
     hereNone: "还没有录入词语：请选择一个并添加。",

@@ -83,7 +83,9 @@ class EditingFeature(PageFeature):
         if isinstance(message, editing.ApplyEdit):
             number, plan = self._plans.pop(page, (-1, EditPlan({}, {})))
             if number != message.number:
-                raise EditRefusedError(Diagnostic("EDIT101", phrase("this edit was not shown before")))
+                raise EditRefusedError(
+                    Diagnostic("EDIT101", phrase("this edit was not previewed before it was applied"))
+                )
             files = await asyncio.to_thread(history.apply, plan)
         elif isinstance(message, editing.UndoEdit):
             files = await asyncio.to_thread(history.undo)
@@ -142,15 +144,16 @@ def _why_not(robot: Robot | None, known: Description | None) -> Phrase | None:
         return phrase("there is no robot")
     if known is not None and known.document.root.tag == "sdf":
         return phrase(
-            "this robot is described in SDF, and edits are made in URDF and xacro: `linkwright convert FILE --to urdf`"
+            "this robot is described in SDF, but only URDF and xacro can be edited: run `linkwright "
+            "convert FILE --to urdf`"
         )
     if known is None or known.name.startswith("<"):
         return phrase(
-            "this description arrived as a text, and its file is unknown: open it with `linkwright view FILE`"
+            "this description was received as text, so its file is unknown: open it with `linkwright view FILE`"
         )
     return None
 
 
 def _elsewhere() -> Diagnostic:
-    message = phrase("files are written only for pages that are open on the files' machine")
+    message = phrase("files are written only from pages that are open on the machine with the files")
     return Diagnostic("EDIT109", message, hint=phrase("open the page there, or through an SSH tunnel"))

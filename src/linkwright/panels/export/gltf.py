@@ -218,7 +218,7 @@ class _RobotWriter:
         try:
             path = self._files.path(url)
         except FileRefusedError:
-            raise _unreadable(link, urlsplit(url).path, phrase("it does not exist, or may not be read")) from None
+            raise _unreadable(link, urlsplit(url).path, phrase("it does not exist, or cannot be read")) from None
         try:
             return read_parts(path, resolver=_Neighbours(self._files, url))
         except BadMeshError as error:

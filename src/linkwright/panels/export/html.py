@@ -50,7 +50,7 @@ def html_of(snapshot: Snapshot) -> bytes:
         script = _script(folder)
         style = (folder / "export.css").read_text(encoding="utf-8")
     except OSError:
-        hint = phrase("in a checkout of Linkwright run `make page`")
+        hint = phrase("run `make page` in a checkout of Linkwright")
         raise LinkwrightError(Diagnostic("VIEW202", phrase("the page for exports was not built"), hint=hint)) from None
     script = script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
     program = f"Linkwright {__version__}"

@@ -48,7 +48,7 @@ def configuration_path(text: str, folder: Path) -> Path:
     except (ValueError, RuntimeError, OSError):
         ends, path = ("", ""), Path(text)
     if "\0" in text or any(end != ENDING for end in ends):
-        hint = phrase("give it a name that ends in '{ending}'", ending=ENDING)
+        hint = phrase("choose a name that ends in '{ending}'", ending=ENDING)
         raise LinkwrightError(
             Diagnostic("RVIZ105", phrase("'{text}' is not the name of an RViz configuration", text=text), hint=hint)
         )

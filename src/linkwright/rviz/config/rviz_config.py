@@ -45,7 +45,7 @@ GLOBAL_OPTIONS = (
         "Frame Rate",
         "int",
         30,
-        "The most transform updates a second, in hertz.",
+        "The maximum rate of transform updates, in hertz.",
         minimum=1,
         maximum=120,
     ),

@@ -176,7 +176,7 @@ _EXPECTED = {
     "bool": phrase("true or false is expected"),
     "int": phrase("an integer is expected"),
     "float": phrase("a finite number is expected"),
-    "string": phrase("a text of at most {maximum_text} characters is expected", maximum_text=MAXIMUM_TEXT),
+    "string": phrase("a string of at most {maximum_text} characters is expected", maximum_text=MAXIMUM_TEXT),
     "color": "a colour such as #a0a0a4 is expected",
     "enum": "one of {options} is expected",
     "frame": phrase("the name of a frame is expected"),

@@ -374,7 +374,7 @@ def _write_out_aliases(root: yaml.Node, source: SourceText) -> None:
             message = (
                 phrase("an alias refers to itself")
                 if id(node) in above
-                else phrase("more than {maximum_nodes} values", maximum_nodes=MAXIMUM_NODES)
+                else phrase("it has more than {maximum_nodes} values", maximum_nodes=MAXIMUM_NODES)
             )
             raise LinkwrightError(Diagnostic("RVIZ102", message, _span(node, source), source=source))
         if id(node) in seen:

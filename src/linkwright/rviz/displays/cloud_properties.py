@@ -27,10 +27,14 @@ STYLE_SPECS: Schema = (
         "The shape of a point, from the fastest to the slowest to draw.",
         options=("Points", "Squares", "Flat Squares", "Spheres", "Boxes", "Tiles"),
     ),
-    PropertySpec("Size (m)", "float", 0.01, "Size of a point, in metres; not of the style Points.", minimum=0.0001),
+    PropertySpec(
+        "Size (m)", "float", 0.01, "Size of a point, in metres; it does not apply to the style Points.", minimum=0.0001
+    ),
     PropertySpec("Size (Pixels)", "float", 3.0, "Size of a point of the style Points, in pixels.", minimum=1.0),
     alpha("Opacity of the points: 0 is invisible."),
-    PropertySpec(DECAY_TIME, "float", 0.0, "Seconds that points stay; 0 shows the newest message only.", minimum=0.0),
+    PropertySpec(
+        DECAY_TIME, "float", 0.0, "How many seconds points are shown; 0 shows only the newest message.", minimum=0.0
+    ),
 )
 
 _INTENSITY = ((COLOUR_TRANSFORMER,), "Intensity")
@@ -46,7 +50,7 @@ TRANSFORMER_SPECS: Schema = (
         CHANNEL,
         "string",
         "intensity",
-        "The channel that gives the intensity.",
+        "The channel that contains the intensity.",
         options=("intensity",),
         when=_INTENSITY,
     ),
@@ -58,23 +62,27 @@ TRANSFORMER_SPECS: Schema = (
         when=_INTENSITY,
     ),
     PropertySpec("Invert Rainbow", "bool", False, "Reverse the rainbow.", when=(("Use rainbow",), True)),
-    PropertySpec("Min Color", "color", "#000000", "Colour of the least intensity.", when=_PLAIN),
-    PropertySpec("Max Color", "color", "#ffffff", "Colour of the largest intensity.", when=_PLAIN),
+    PropertySpec("Min Color", "color", "#000000", "Colour of the minimum intensity.", when=_PLAIN),
+    PropertySpec("Max Color", "color", "#ffffff", "Colour of the maximum intensity.", when=_PLAIN),
     PropertySpec(
-        AUTO_INTENSITY, "bool", True, "Use the least and the largest intensity of each message.", when=_INTENSITY
+        AUTO_INTENSITY, "bool", True, "Use the minimum and maximum intensity of each message.", when=_INTENSITY
     ),
     PropertySpec(
-        MIN_INTENSITY, "float", 0.0, "The intensity that gets the first colour.", when=((AUTO_INTENSITY,), False)
+        MIN_INTENSITY, "float", 0.0, "The intensity that is shown in the first colour.", when=((AUTO_INTENSITY,), False)
     ),
     PropertySpec(
-        MAX_INTENSITY, "float", 4096.0, "The intensity that gets the last colour.", when=((AUTO_INTENSITY,), False)
+        MAX_INTENSITY,
+        "float",
+        4096.0,
+        "The intensity that is shown in the last colour.",
+        when=((AUTO_INTENSITY,), False),
     ),
     PropertySpec("Axis", "enum", "Z", "The axis along which the colour changes.", options=AXES, when=_AXIS),
     PropertySpec(
         AUTO_VALUES,
         "bool",
         True,
-        "Use the least and the largest coordinate of each message.",
+        "Use the minimum and maximum coordinate of each message.",
         when=_AXIS,
         expanded=True,
         children=(
@@ -82,20 +90,24 @@ TRANSFORMER_SPECS: Schema = (
                 VALUE_BOUNDS[0],
                 "float",
                 -10.0,
-                "The coordinate that gets the first colour, in metres.",
+                "The coordinate that is shown in the first colour, in metres.",
                 when=((AUTO_VALUES,), False),
             ),
             PropertySpec(
                 VALUE_BOUNDS[1],
                 "float",
                 10.0,
-                "The coordinate that gets the last colour, in metres.",
+                "The coordinate that is shown in the last colour, in metres.",
                 when=((AUTO_VALUES,), False),
             ),
         ),
     ),
     PropertySpec(
-        "Use Fixed Frame", "bool", True, "Use the coordinates in the Fixed Frame, not in the message's.", when=_AXIS
+        "Use Fixed Frame",
+        "bool",
+        True,
+        "Use the coordinates in the Fixed Frame, not those in the frame of the message.",
+        when=_AXIS,
     ),
     PropertySpec("Color", "color", "#ffffff", "The colour of every point.", when=((COLOUR_TRANSFORMER,), "FlatColor")),
 )

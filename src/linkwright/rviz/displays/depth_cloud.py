@@ -83,7 +83,7 @@ DEPTH_SCHEMA: Schema = (
                 SIZE_FACTOR,
                 "float",
                 1.0,
-                "Times so much.",
+                "A factor on the size of the points.",
                 minimum=0.0001,
                 when=((AUTO_SIZE,), True),
             ),
@@ -93,7 +93,7 @@ DEPTH_SCHEMA: Schema = (
         OCCLUSION,
         "bool",
         False,
-        "Keep points that nearer ones cover, until the camera moves.",
+        "Keep points that nearer points cover, until the camera moves.",
         expanded=True,
         children=(
             PropertySpec(

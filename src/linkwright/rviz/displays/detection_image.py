@@ -47,7 +47,8 @@ class DetectionImageDisplay(ImageDisplay):
             THRESHOLD,
             "float",
             0.0,
-            "Detections of a lower score are left out: by their node, if it has a parameter 'threshold', else here.",
+            "The minimum score of detections. Their node applies it if it has a parameter 'threshold'; "
+            "otherwise the display does.",
             minimum=0.0,
             maximum=1.0,
         ),

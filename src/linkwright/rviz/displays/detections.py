@@ -39,7 +39,9 @@ CLASS_COLOURS = PropertySpec(
 _CLASSES: Schema = (
     PropertySpec("Show Score", "bool", False, "Write class and score above each box."),
     CLASS_COLOURS,
-    PropertySpec(LIFETIME, "int", 0, "Seconds that a message is shown; 0 shows it until the next.", minimum=0),
+    PropertySpec(
+        LIFETIME, "int", 0, "How many seconds a message is shown; 0 shows it until the next message.", minimum=0
+    ),
 )
 
 

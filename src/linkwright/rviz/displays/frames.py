@@ -238,7 +238,7 @@ class TfDisplay(ViewerDisplay):
         boxes = tuple(
             PropertySpec(name, "bool", True, "Draw this frame.", nested=True, details="frame") for name in self._boxes()
         )
-        every = PropertySpec(_ALL[1], "bool", True, "Set the boxes of all frames.")
+        every = PropertySpec(_ALL[1], "bool", True, "Enable or disable all frames.")
         return PropertySpec("Frames", "group", description="The frames that tf knows.", children=(every, *boxes))
 
     def _tree_spec(self) -> PropertySpec:

@@ -48,7 +48,7 @@ class GridMapDisplay(RecentDisplay):
             PropertySpec(
                 "Height Transformer", "enum", _LAYER, "The source of the heights: a layer, or none.", options=_HEIGHTS
             ),
-            PropertySpec("Height Layer", "string", "elevation", "The layer that gives the heights."),
+            PropertySpec("Height Layer", "string", "elevation", "The layer that contains the heights."),
             PropertySpec(
                 "Color Transformer",
                 "enum",
@@ -56,26 +56,34 @@ class GridMapDisplay(RecentDisplay):
                 "The source of the colours: the values of a layer, the colours of a layer, one colour; or no surface.",
                 options=_COLORS,
             ),
-            PropertySpec("Color Layer", "string", "elevation", "The layer that gives the colours."),
+            PropertySpec("Color Layer", "string", "elevation", "The layer that contains the colours."),
             PropertySpec(
                 "Color", "color", "#c8c8c8", "The colour of the surface.", when=(("Color Transformer",), "FlatColor")
             ),
             PropertySpec(f"Use {word}", "bool", True, "Use the colours of the rainbow for values."),
             PropertySpec(f"Invert {word}", "bool", False, "Reverse the rainbow.", when=((f"Use {word}",), True)),
             PropertySpec(
-                "Min Color", "color", "#000000", "The colour of the least value.", when=((f"Use {word}",), False)
+                "Min Color", "color", "#000000", "The colour of the minimum value.", when=((f"Use {word}",), False)
             ),
             PropertySpec(
-                "Max Color", "color", "#ffffff", "The colour of the largest value.", when=((f"Use {word}",), False)
+                "Max Color", "color", "#ffffff", "The colour of the maximum value.", when=((f"Use {word}",), False)
             ),
             PropertySpec(
-                "Autocompute Intensity Bounds", "bool", True, "Use the least and the largest value of the layer."
+                "Autocompute Intensity Bounds", "bool", True, "Use the minimum and maximum value of the layer."
             ),
             PropertySpec(
-                "Min Intensity", "float", 0.0, "The least number.", when=(("Autocompute Intensity Bounds",), False)
+                "Min Intensity",
+                "float",
+                0.0,
+                "The value that is shown in the colour of the minimum.",
+                when=(("Autocompute Intensity Bounds",), False),
             ),
             PropertySpec(
-                "Max Intensity", "float", 10.0, "The largest number.", when=(("Autocompute Intensity Bounds",), False)
+                "Max Intensity",
+                "float",
+                10.0,
+                "The value that is shown in the colour of the maximum.",
+                when=(("Autocompute Intensity Bounds",), False),
             ),
         )
 
@@ -112,7 +120,7 @@ class GridMapDisplay(RecentDisplay):
             step += 1
         if step > 1:
             self.set_status_row(
-                _SIZE, "warn", phrase("The map is large: one of {step} rows and columns is drawn", step=step)
+                _SIZE, "warn", phrase("The map is large: 1 in {step} rows and columns is drawn", step=step)
             )
         else:
             self.delete_status_row(_SIZE)

@@ -51,14 +51,17 @@ _SCHEMA: Schema = (
     _read_only_vector("Position", "XYZ", "The position of the lower left corner in the map's frame, in metres."),
     _read_only_vector("Orientation", "XYZW", "The rotation of the map in its frame."),
     PropertySpec(
-        _USE_TIMESTAMP, "bool", False, "Place the map at its frame's pose at the map's time, not at the current one."
+        _USE_TIMESTAMP,
+        "bool",
+        False,
+        "Place the map at the pose of its frame at the map's time, not at the current pose.",
     ),
     PropertySpec(_BINARY, "bool", False, "Show only free and occupied cells."),
     PropertySpec(
         "Binary threshold",
         "int",
         100,
-        "The least value that counts as occupied.",
+        "The minimum value of an occupied cell.",
         minimum=0,
         maximum=100,
     ),

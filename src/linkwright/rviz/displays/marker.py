@@ -69,7 +69,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         )
         return (
             *self.SCHEMA,
-            PropertySpec(_NAMESPACES, "bool", True, "Set the boxes of all namespaces.", children=boxes),
+            PropertySpec(_NAMESPACES, "bool", True, "Enable or disable all namespaces.", children=boxes),
         )
 
     def process_message(self, message: Any, pose: Pose | None) -> None:

@@ -53,8 +53,8 @@ class OctomapDisplay(StoredMarkersDisplay):
             minimum=1,
             maximum=_DEPTH,
         ),
-        PropertySpec("Max. Height Display", "float", _MOST, "Cells above this height are not drawn, in metres."),
-        PropertySpec("Min. Height Display", "float", -_MOST, "Cells below this height are not drawn, in metres."),
+        PropertySpec("Max. Height Display", "float", _MOST, "The maximum height of cells that are drawn, in metres."),
+        PropertySpec("Min. Height Display", "float", -_MOST, "The minimum height of cells that are drawn, in metres."),
     )
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:

@@ -60,7 +60,7 @@ def covariance() -> PropertySpec:
             "Frame",
             "enum",
             "Local",
-            "Whether the deviations are about the axes of the pose or of the frame it is given in.",
+            "Whether the deviations are about the axes of the pose, or about those of its reference frame.",
             options=("Local", "Fixed"),
         ),
         PropertySpec(
@@ -74,10 +74,10 @@ def covariance() -> PropertySpec:
             "Color",
             "color",
             "#ffff7f",
-            "Colour of the three.",
+            "Colour of the three rotations.",
             when=(("Covariance", "Orientation", "Color Style"), "Unique"),
         ),
-        alpha("Opacity of the three.", 0.5),
+        alpha("Opacity of the three rotations.", 0.5),
         PropertySpec(
             "Offset",
             "float",
@@ -85,7 +85,7 @@ def covariance() -> PropertySpec:
             "Distance from the pose, in metres; in a plane: length of the triangle.",
             minimum=0.0,
         ),
-        PropertySpec("Scale", "float", 1.0, "Size of the three, in standard deviations.", minimum=0.0),
+        PropertySpec("Scale", "float", 1.0, "Size of the three rotations, in standard deviations.", minimum=0.0),
     )
     return PropertySpec(
         "Covariance",

@@ -33,7 +33,7 @@ _OPTIONS = (
     PropertySpec("Expand Tree", "bool", False, "Open or close the rows of all links and joints of the tree."),
     PropertySpec("Expand Link Details", "bool", False, "Open or close the details of each link."),
     PropertySpec("Expand Joint Details", "bool", False, "Open or close the details of each joint."),
-    PropertySpec(ALL[1], "bool", True, "Set the boxes of all links."),
+    PropertySpec(ALL[1], "bool", True, "Enable or disable all links."),
 )
 _OPTION_NAMES = frozenset(spec.name for spec in _OPTIONS)
 
@@ -309,7 +309,7 @@ class RobotModelDisplay(ViewerDisplay):
             "Topic",
             level,
             phrase(
-                "The description of {owner} is shown; {others} publish on the topic, too", owner=owner, others=others
+                "The description of {owner} is shown; {others} also publish on the topic", owner=owner, others=others
             ),
         )
 

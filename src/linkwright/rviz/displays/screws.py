@@ -51,7 +51,7 @@ class TwistDisplay(ScrewDisplay):
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
         *_screw_specs("Linear", "Angular"),
-        PropertySpec("Hide Small Values", "bool", True, "Draw no arrow that is shorter than it is wide."),
+        PropertySpec("Hide Small Values", "bool", True, "Do not draw arrows that are shorter than their width."),
     )
 
     def vectors(self, message: Any) -> tuple[Any, Any]:

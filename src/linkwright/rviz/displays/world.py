@@ -84,8 +84,9 @@ class WorldDisplay(TopicDisplay):
             _RAYS,
             "enum",
             CHOICES[0],
-            "Draw the rays of lidars as far as they go: of those with <visualize>true</visualize>, of all, or of none. "
-            "Of a lidar with very many rays some are drawn.",
+            "Draw the rays of lidars at their measured lengths: of lidars with "
+            "<visualize>true</visualize>, of all, or of none. If a lidar has very many rays, only some "
+            "are drawn.",
             options=CHOICES,
         ),
         PropertySpec(_RAYS_TOPIC, "string", RAYS_TOPIC, "The topic of the rays, sensor_msgs/msg/LaserScan."),
@@ -93,8 +94,8 @@ class WorldDisplay(TopicDisplay):
             _FRUSTUMS,
             "enum",
             CHOICES[0],
-            "Draw the view of cameras, from the near to the far plane: of those with <visualize>true</visualize>, of "
-            "all, or of none.",
+            "Draw the view of cameras, from the near to the far plane: of cameras with "
+            "<visualize>true</visualize>, of all, or of none.",
             options=CHOICES,
         ),
     )

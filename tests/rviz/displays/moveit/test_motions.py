@@ -73,7 +73,7 @@ def test_motions_that_cannot_be_shown_are_refused():
         read_motion(robot(), trajectory(math.nan))
     short = trajectory(1.0)
     short.trajectory[0].joint_trajectory.points[0].positions = []
-    with pytest.raises(UnusableStateError, match="1 joints and 0 positions"):
+    with pytest.raises(UnusableStateError, match="1 joints, but 0 positions"):
         read_motion(robot(), short)
 
 

@@ -281,7 +281,7 @@ async def test_bad_scenes_are_said_and_the_next_good_one_is_drawn():
         assert status["nan"] == ("error", "Contains invalid floating point values (nans or infs)")
         assert status["short"] == ("error", "A primitive of type 1 needs 3 dimensions, but has 2")
         assert status["kind"] == ("error", "Unknown type of primitive: 9")
-        assert status["poses"] == ("error", "1 shapes of kind primitive and 2 poses for them")
+        assert status["poses"] == ("error", "1 shapes of kind primitive have 2 poses")
         assert status["mesh"] == ("error", "A triangle of a mesh refers to vertex 7, but there are 0")
         assert status["plane"] == ("error", "A plane has no normal")
         assert status["ball"] == ("error", "The robot has no link 'foot' for the attached object 'ball'")
@@ -294,7 +294,7 @@ async def test_bad_scenes_are_said_and_the_next_good_one_is_drawn():
         uneven = state(shoulder=0.0)
         uneven.joint_state.position = []
         await talker.say(scene(robot=uneven))
-        assert w.status("PlanningScene")["State"] == ("error", "The state has 1 joints and 0 positions")
+        assert w.status("PlanningScene")["State"] == ("error", "The state has 1 joints, but 0 positions")
         await talker.say(scene(thing("good"), robot=state(shoulder=0.5)))
         assert set(w.status("PlanningScene")) == {"Topic", "URDF", "Transform"}
 

@@ -343,7 +343,7 @@ class TopicDisplay(DataDisplay, ABC):
 
             there = sorted(there, key=lambda name: -SequenceMatcher(None, topic, name).ratio())[:_MOST_OTHERS]
             return phrase(
-                "the topic has no publisher; there is {message} on {topics}", message=message, topics=joined(there)
+                "the topic has no publisher; {message} is published on {topics}", message=message, topics=joined(there)
             )
         return phrase("the topic has no publisher")
 

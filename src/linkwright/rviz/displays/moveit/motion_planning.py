@@ -18,7 +18,7 @@ _REQUEST = "Planning Request"
 _REQUEST_SPEC = PropertySpec(
     _REQUEST,
     "group",
-    description="The first and the last state of the last motion that was planned, of the links that it moves.",
+    description="The first and last states of the last planned motion, for the links that it moves.",
     children=(
         PropertySpec("Query Start State", "bool", False, "Draw the first state."),
         PropertySpec("Query Goal State", "bool", True, "Draw the last state."),

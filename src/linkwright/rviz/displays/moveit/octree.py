@@ -118,7 +118,9 @@ def _read_full(data: bytes, kind: str, resolution: float) -> Cells:
     size = _FULL_NODES.get(kind)
     if size is None:
         known = ", ".join(_FULL_NODES)
-        raise BadOctreeError(phrase("Unknown octomap type: '{kind}'; known are {known}", kind=kind, known=known))
+        raise BadOctreeError(
+            phrase("Unknown octomap type: '{kind}'; the known types are {known}", kind=kind, known=known)
+        )
     leaves = _Leaves()
     pending = [_ROOT]
     at = 0

@@ -50,16 +50,16 @@ GEOMETRY_SPEC = PropertySpec(
     children=(
         PropertySpec("Scene Name", "string", "(noname)", "The name of the scene.", read_only=True),
         PropertySpec("Show Scene Geometry", "bool", True, "Draw the objects and the octomap."),
-        fraction("Scene Alpha", 0.9, "Opacity of objects without a colour of their own, and of the octomap."),
-        PropertySpec("Scene Color", "color", "#32e632", "Colour of objects that have none of their own."),
+        fraction("Scene Alpha", 0.9, "Opacity of objects that have no colour, and of the octomap."),
+        PropertySpec("Scene Color", "color", "#32e632", "Colour of objects that have no colour."),
         VOXEL_RENDERING,
         VOXEL_COLORING,
-        PropertySpec("Scene Display Time", "float", 0.01, "Least seconds between two updates.", minimum=0.0001),
+        PropertySpec(
+            "Scene Display Time", "float", 0.01, "The minimum time between updates, in seconds.", minimum=0.0001
+        ),
     ),
 )
-ATTACHED = PropertySpec(
-    "Attached Body Color", "color", "#963296", "Colour of attached bodies that have none of their own."
-)
+ATTACHED = PropertySpec("Attached Body Color", "color", "#963296", "Colour of attached bodies that have no colour.")
 
 
 def visibility(visual: str, collision: str) -> tuple[PropertySpec, ...]:
@@ -78,7 +78,7 @@ def scene_robot_spec(links: Sequence[str]) -> PropertySpec:
     return PropertySpec(
         ROBOT,
         "group",
-        description="The robot as it is in the scene.",
+        description="The robot, in the state of the scene.",
         children=(*SHOWN, fraction("Robot Alpha", 1.0, "Opacity of the robot."), ATTACHED, links_spec(links)),
     )
 
@@ -106,7 +106,7 @@ def path_specs(links: Sequence[str]) -> tuple[PropertySpec, ...]:
         PropertySpec("Show Trail", "bool", False, "Draw the robot in all its states."),
         PropertySpec("Trail Step Size", "int", 1, "Draw every n-th state of the trail.", minimum=1),
         PropertySpec(
-            "Interrupt Display", "bool", False, "Show a new motion without waiting for the end of the one before."
+            "Interrupt Display", "bool", False, "Show a new motion without waiting for the end of the previous one."
         ),
         PropertySpec("Robot Color", "color", "#963296", "Colour of the robot that moves."),
         PropertySpec("Color Enabled", "bool", False, "Draw the robot that moves in that colour."),
@@ -121,7 +121,7 @@ def links_spec(links: Sequence[str]) -> PropertySpec:
         for name in links
         if name != ALL_LINKS
     )
-    every = PropertySpec(ALL_LINKS, "bool", True, "Set the boxes of all links.")
+    every = PropertySpec(ALL_LINKS, "bool", True, "Enable or disable all links.")
     return PropertySpec(LINKS, "group", description="The links of the robot.", children=(every, *boxes))
 
 

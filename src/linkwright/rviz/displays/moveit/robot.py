@@ -133,8 +133,7 @@ class PosableRobot:
         if len(several.joint_names) != len(several.transforms):
             raise UnusableStateError(
                 phrase(
-                    "The state has {joint_names} joints of many degrees of freedom and "
-                    "{transforms} transforms for them",
+                    "The state has {joint_names} multi-DOF joints, but {transforms} transforms",
                     joint_names=len(several.joint_names),
                     transforms=len(several.transforms),
                 )
@@ -158,7 +157,9 @@ class PosableRobot:
         if len(names) != len(positions):
             raise UnusableStateError(
                 phrase(
-                    "The state has {names} joints and {positions} positions", names=len(names), positions=len(positions)
+                    "The state has {names} joints, but {positions} positions",
+                    names=len(names),
+                    positions=len(positions),
                 )
             )
         unknown = []

@@ -58,7 +58,7 @@ def object_markers(message: Any, namespace: str, color: Color, *, frame: str, ba
         if len(poses) not in (0, len(shapes)):
             raise BadObjectError(
                 phrase(
-                    "{shapes} shapes of kind {what} and {poses} poses for them",
+                    "{shapes} shapes of kind {what} have {poses} poses",
                     shapes=len(shapes),
                     what=what,
                     poses=len(poses),
