@@ -93,7 +93,7 @@ CHINESE = Words(
     messages="""\
 ## 消息、服务和动作
 
-下列功能包的 `<功能包>.msg`、`.srv`、`.action` 中所有类型都有，另外还有您自己功能包里的：
+下列功能包的 `<功能包>.msg`、`.srv`、`.action` 中所有类型都有，另外还有你自己功能包里的：
 {packages}。
 """,
     missing="""\
