@@ -37,7 +37,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--dictionary", metavar="NAME", help="which markers aruco and apriltag look for, such as 6X6_250"
     )
-    parser.add_argument("--threshold", metavar="SCORE", type=fraction, default=0.5, help="the minimum score, default 0.5")
+    parser.add_argument(
+        "--threshold", metavar="SCORE", type=fraction, default=0.5, help="the minimum score, default 0.5"
+    )
     parser.add_argument(
         "--iou",
         metavar="SHARE",

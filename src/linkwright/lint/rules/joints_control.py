@@ -180,7 +180,8 @@ class SafetyGainNegative(Rule):
                         safety,
                         name,
                         hint=phrase(
-                            "a negative gain drives the joint towards its limit: write {value}", value=format_number(-gain)
+                            "a negative gain drives the joint towards its limit: write {value}",
+                            value=format_number(-gain),
                         ),
                     )
 
@@ -226,7 +227,9 @@ class DynamicsNegative(Rule):
                         ),
                         dynamics,
                         name,
-                        hint=phrase("a negative value feeds energy into the joint: write {value}", value=format_number(-size)),
+                        hint=phrase(
+                            "a negative value feeds energy into the joint: write {value}", value=format_number(-size)
+                        ),
                         fix=Fix((edit,), safe=False) if edit else None,
                     )
 
