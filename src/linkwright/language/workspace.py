@@ -86,6 +86,10 @@ class Workspace:
         before = self._results.pop(subject, ())
         return self._of_files({_file(diagnostic, subject) for diagnostic in before})
 
+    def findings(self, file: Path) -> list[Diagnostic]:
+        """Return the findings about a file of the checks so far, without duplicates."""
+        return self._of_files({file})[file]
+
     def _checked(self, subject: Path, texts: Mapping[Path, str]) -> tuple[Diagnostic, ...]:
         overlay = Overlay({str(path): text for path, text in texts.items()})
         if subject.is_dir():

@@ -20,7 +20,8 @@ _WHOLE = (_URDF, ".world", ".sdf")
 """Endings of files that describe something by themselves."""
 DESCRIPTIONS = (*_WHOLE, _XACRO)
 """Endings of files with descriptions, or with parts of them."""
-_XML_FILES = (*DESCRIPTIONS, ".srdf", ".launch", ".launch.xml", MANIFEST, "model.config")
+XML_FILES = (*DESCRIPTIONS, ".srdf", ".launch", ".launch.xml", MANIFEST, "model.config")
+"""Endings of the XML files of a package."""
 _EMPTY_FILE = "XML105"
 _COMMENT = lazy_pattern(rf"{COMMENT}|<\?xml\s[^>]*\?>")
 _WEB_PAGE = "package.json"
@@ -91,7 +92,7 @@ def find_xml_files(paths: Iterable[Path]) -> list[Path]:
     files: dict[Path, None] = {}
     for path in paths:
         if path.is_dir():
-            found, _ = walk(path, _XML_FILES)
+            found, _ = walk(path, XML_FILES)
             files.update(dict.fromkeys(file for file in found if _EXPANDED not in _text(file)[:_HEAD]))
         else:
             files[path] = None

@@ -19,6 +19,8 @@ from linkwright._version import __version__
 from linkwright.diagnostics import LinkwrightError
 from linkwright.language.includes import real
 from linkwright.language.workspace import Workspace
+from linkwright.lint.targets import XML_FILES
+from linkwright.lsp import fixes, texts
 from linkwright.lsp.findings import as_diagnostics
 from linkwright.lsp.positions import UTF_16, TextPositions
 from linkwright.xmltree.decoding import decode
@@ -81,6 +83,13 @@ class LinkwrightServer(LanguageServer):
         if path is not None and self.project is not None:
             self.project.file_saved(real(path))
             self.file_changed(uri)
+
+    def text(self, document: types.TextDocumentIdentifier) -> tuple[Path, TextPositions | None]:
+        """Return the path of a document, and its text; None if it is not a file in XML that can be read."""
+        path = path_of(document.uri)
+        if path is None or not path.name.endswith((*XML_FILES, ".xml")):
+            return Path(), None
+        return path, self.positions(path)
 
     def positions(self, path: Path) -> TextPositions | None:
         """Return the positions of a file's text, that of the editor if it is open; None if it cannot be read."""
@@ -197,4 +206,56 @@ def make_server() -> LinkwrightServer:
         for change in watched.changes:
             server.file_saved(change.uri)
 
+    _add_requests(server)
     return server
+
+
+def _add_requests(server: LinkwrightServer) -> None:
+    @server.feature(types.TEXT_DOCUMENT_FORMATTING)
+    def format_document(server: LinkwrightServer, asked: types.DocumentFormattingParams) -> list[types.TextEdit] | None:
+        path, positions = server.text(asked.text_document)
+        return None if positions is None else texts.format_edits(positions, path)
+
+    @server.feature(types.TEXT_DOCUMENT_RANGE_FORMATTING)
+    def format_range(
+        server: LinkwrightServer, asked: types.DocumentRangeFormattingParams
+    ) -> list[types.TextEdit] | None:
+        path, positions = server.text(asked.text_document)
+        lines = (asked.range.start.line, asked.range.end.line + (asked.range.end.character > 0))
+        return None if positions is None else texts.format_edits(positions, path, lines)
+
+    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
+    def document_symbol(
+        server: LinkwrightServer, asked: types.DocumentSymbolParams
+    ) -> list[types.DocumentSymbol] | None:
+        _, positions = server.text(asked.text_document)
+        return None if positions is None else texts.symbols(positions)
+
+    @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
+    def folding_range(server: LinkwrightServer, asked: types.FoldingRangeParams) -> list[types.FoldingRange] | None:
+        _, positions = server.text(asked.text_document)
+        return None if positions is None else texts.folds(positions)
+
+    @server.feature(types.TEXT_DOCUMENT_SELECTION_RANGE)
+    def selection_range(
+        server: LinkwrightServer, asked: types.SelectionRangeParams
+    ) -> list[types.SelectionRange] | None:
+        _, positions = server.text(asked.text_document)
+        return None if positions is None else texts.selections(positions, asked.positions)
+
+    @server.feature(types.TEXT_DOCUMENT_LINKED_EDITING_RANGE)
+    def linked_editing_range(
+        server: LinkwrightServer, asked: types.LinkedEditingRangeParams
+    ) -> types.LinkedEditingRanges | None:
+        _, positions = server.text(asked.text_document)
+        return None if positions is None else texts.linked_tags(positions, asked.position)
+
+    kinds = types.CodeActionOptions([types.CodeActionKind.QuickFix, types.CodeActionKind.SourceFixAll])
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, kinds)
+    def code_action(server: LinkwrightServer, asked: types.CodeActionParams) -> list[types.CodeAction] | None:
+        path, positions = server.text(asked.text_document)
+        if positions is None or server.project is None:
+            return None
+        found = server.project.findings(real(path))
+        return fixes.actions(found, asked.range, server.positions, server.uri_of, asked.context.diagnostics)

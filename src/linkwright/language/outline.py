@@ -1,0 +1,100 @@
+"""The elements of an XML text in any state, with their ranges: symbols, folds and pairs of tags for an editor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from linkwright.xmltree.tokens import Kind, Token, tokens
+
+_NAMING = ("name", "filename", "reference", "link", "value")
+"""Attributes that identify an element, the first that it has."""
+
+
+@dataclass(slots=True)
+class OutlineElement:
+    """An element, or the part of it that is typed.
+
+    Attributes:
+        tag: its start tag.
+        closing: its end tag; None if it has none, as ``<a/>``.
+        children: the elements in it.
+        end: the offset behind it.
+    """
+
+    tag: Token
+    closing: Token | None = None
+    children: list[OutlineElement] = field(default_factory=list)
+    end: int = 0
+
+    @property
+    def label(self) -> str:
+        """The tag with the value that identifies the element, such as ``link base``."""
+        given = {attribute.name: attribute.value for attribute in self.tag.attributes()}
+        value = next((given[name] for name in _NAMING if given.get(name)), None)
+        return f"{self.tag.name} {value}" if value else self.tag.name
+
+    @property
+    def is_named(self) -> bool:
+        """Whether it has a name, or includes a file."""
+        return any(attribute.name in _NAMING[:3] and attribute.value for attribute in self.tag.attributes())
+
+    def all(self) -> Iterator[OutlineElement]:
+        """Yield the element and all elements in it, in the order of the text."""
+        yield self
+        for child in self.children:
+            yield from child.all()
+
+
+@dataclass(slots=True)
+class Outline:
+    """The elements and comments of a text.
+
+    Attributes:
+        elements: the elements that are in no other one.
+        comments: the comments.
+    """
+
+    elements: list[OutlineElement] = field(default_factory=list)
+    comments: list[Token] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, text: str) -> Outline:
+        """Return the outline of a text.
+
+        An end tag closes the nearest open element of its name; elements inside that lack their end tags end there.
+        """
+        outline = cls()
+        open_elements: list[OutlineElement] = []
+        for token in tokens(text):
+            if token.kind is Kind.COMMENT:
+                outline.comments.append(token)
+            elif token.kind is Kind.START and token.name:
+                element = OutlineElement(token, end=token.end)
+                (open_elements[-1].children if open_elements else outline.elements).append(element)
+                if not token.is_whole:
+                    open_elements.append(element)
+            elif token.kind is Kind.END and any(element.tag.name == token.name for element in open_elements):
+                while open_elements:
+                    element = open_elements.pop()
+                    if element.tag.name == token.name:
+                        element.closing, element.end = token, token.end
+                        break
+                    element.end = token.start
+        for element in open_elements:
+            element.end = len(text)
+        return outline
+
+    def all(self) -> Iterator[OutlineElement]:
+        """Yield all elements, in the order of the text."""
+        for element in self.elements:
+            yield from element.all()
+
+    def around(self, offset: int) -> list[OutlineElement]:
+        """Return the elements that contain an offset, the outermost first."""
+        found: list[OutlineElement] = []
+        inside = self.elements
+        while element := next((each for each in inside if each.tag.start <= offset <= each.end), None):
+            found.append(element)
+            inside = element.children
+        return found

@@ -1,0 +1,130 @@
+"""Requests about the text of one file: its format, symbols, folds, ranges and pairs of tags."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from lsprotocol import types
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.language.outline import Outline, OutlineElement
+from linkwright.lint.configuration import settings_for
+from linkwright.lsp.positions import TextPositions
+from linkwright.xmltree.formatting import changes, format_text
+
+_KINDS = {
+    "robot": types.SymbolKind.Module,
+    "world": types.SymbolKind.Module,
+    "model": types.SymbolKind.Class,
+    "link": types.SymbolKind.Object,
+    "joint": types.SymbolKind.Interface,
+    "xacro:macro": types.SymbolKind.Function,
+    "xacro:property": types.SymbolKind.Variable,
+    "xacro:arg": types.SymbolKind.Variable,
+    "xacro:include": types.SymbolKind.File,
+    "include": types.SymbolKind.File,
+    "material": types.SymbolKind.Constant,
+    "plugin": types.SymbolKind.Package,
+    "sensor": types.SymbolKind.Event,
+    "node": types.SymbolKind.Class,
+    "arg": types.SymbolKind.Variable,
+}
+
+
+def format_edits(
+    positions: TextPositions, path: Path, lines: tuple[int, int] | None = None
+) -> list[types.TextEdit] | None:
+    """Return the changes that format a text, as `linkwright format` does; None if it is not XML.
+
+    Args:
+        positions: the text.
+        path: its file, whose settings apply.
+        lines: the first and the last (exclusive) line, from 0, to format; None for all.
+    """
+    text = positions.text
+    try:
+        formatted = format_text(text, str(path), settings_for(path)[0].style)
+    except LinkwrightError:
+        return None
+    starts = [0]
+    for line in text.splitlines(keepends=True):
+        starts.append(starts[-1] + len(line))
+    return [
+        types.TextEdit(positions.range(starts[edit.first], starts[edit.last]), "".join(edit.lines))
+        for edit in changes(text, formatted, lines)
+    ]
+
+
+def symbols(positions: TextPositions) -> list[types.DocumentSymbol]:
+    """Return the elements with names, each with those in it."""
+    return [*_symbols(Outline.of(positions.text).elements, positions)]
+
+
+def _symbols(elements: Iterable[OutlineElement], positions: TextPositions) -> Iterable[types.DocumentSymbol]:
+    for element in elements:
+        children = [*_symbols(element.children, positions)]
+        if not element.is_named and element.tag.name not in _KINDS:
+            yield from children
+            continue
+        yield types.DocumentSymbol(
+            element.label,
+            _KINDS.get(element.tag.name, types.SymbolKind.Field),
+            positions.range(element.tag.start, element.end),
+            positions.range(element.tag.start, element.tag.end),
+            children=children,
+        )
+
+
+def folds(positions: TextPositions) -> list[types.FoldingRange]:
+    """Return the elements and comments of several lines."""
+    outline = Outline.of(positions.text)
+    found = [
+        types.FoldingRange(positions.position(element.tag.start).line, positions.position(closing.start).line - 1)
+        for element in outline.all()
+        if (closing := element.closing) is not None
+    ]
+    found += [
+        types.FoldingRange(
+            positions.position(comment.start).line,
+            positions.position(comment.end).line,
+            kind=types.FoldingRangeKind.Comment,
+        )
+        for comment in outline.comments
+    ]
+    return [fold for fold in found if fold.end_line > fold.start_line]
+
+
+def selections(positions: TextPositions, places: Iterable[types.Position]) -> list[types.SelectionRange]:
+    """Return for each place the ranges around it: attribute value, tag, content, element, and those around it."""
+    outline = Outline.of(positions.text)
+    found = []
+    for place in places:
+        offset = positions.offset(place)
+        ranges: list[tuple[int, int]] = [(0, len(positions.text))]
+        for element in outline.around(offset):
+            ranges.append((element.tag.start, element.end))
+            if element.closing is not None:
+                ranges.append((element.tag.end, element.closing.start))
+            ranges.append((element.tag.start, element.tag.end))
+            ranges += [(attribute.start, attribute.end) for attribute in element.tag.attributes()]
+            ranges += [(attribute.value_start, attribute.value_end) for attribute in element.tag.attributes()]
+        selection: types.SelectionRange | None = None
+        for start, end in ranges:
+            if start <= offset <= end:
+                selection = types.SelectionRange(positions.range(start, end), selection)
+        found.append(selection or types.SelectionRange(positions.whole()))
+    return found
+
+
+def linked_tags(positions: TextPositions, place: types.Position) -> types.LinkedEditingRanges | None:
+    """Return the names of the start and end tag at a place, which are edited together."""
+    offset = positions.offset(place)
+    for element in reversed(Outline.of(positions.text).around(offset)):
+        if element.closing is None:
+            continue
+        length = len(element.tag.name)
+        starts = (element.tag.name_start, element.closing.name_start)
+        if any(start <= offset <= start + length for start in starts):
+            return types.LinkedEditingRanges([positions.range(start, start + length) for start in starts])
+    return None

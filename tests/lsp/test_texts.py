@@ -1,0 +1,96 @@
+"""Requests about the text of one file, through the protocol."""
+
+from __future__ import annotations
+
+from lsprotocol import types
+
+from tests.lsp.conftest import MAIN
+
+FILE = "urdf/arm.urdf.xacro"
+OPTIONS = types.FormattingOptions(2, insert_spaces=True)
+MESSY = MAIN.replace('  <link name="base"/>', '      <link   name="base"/>').replace("  <xacro:bar", "<xacro:bar")
+
+
+def place(text: str, mark: str, after: int = 0) -> types.Position:
+    """Return the position of a mark in a text."""
+    before = text[: text.index(mark) + after]
+    return types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
+
+
+def applied(text: str, edits) -> str:
+    """Return a text with the edits of the server."""
+    lines = text.splitlines(keepends=True)
+    for edit in sorted(edits, key=lambda each: each.range.start.line, reverse=True):
+        assert edit.range.start.character == edit.range.end.character == 0
+        lines[edit.range.start.line : edit.range.end.line] = [edit.new_text]
+    return "".join(lines)
+
+
+async def test_a_text_is_formatted_as_the_command_formats_it(editor):
+    editor.open(FILE, MESSY)
+    edits = await editor.client.text_document_formatting_async(
+        types.DocumentFormattingParams(editor.document(FILE), OPTIONS)
+    )
+    assert applied(MESSY, edits) == MAIN
+    where = types.Range(place(MESSY, "      <link"), place(MESSY, "<xacro:bar"))
+    edits = await editor.client.text_document_range_formatting_async(
+        types.DocumentRangeFormattingParams(editor.document(FILE), where, OPTIONS)
+    )
+    assert '  <link name="base"/>\n' in applied(MESSY, edits)
+
+
+async def test_a_text_that_is_no_xml_is_not_formatted(editor):
+    editor.open(FILE, "<robot>")
+    asked = types.DocumentFormattingParams(editor.document(FILE), OPTIONS)
+    assert await editor.client.text_document_formatting_async(asked) is None
+
+
+async def test_symbols_are_the_elements_with_names(editor):
+    editor.open("urdf/parts.xacro")
+    (robot,) = await editor.client.text_document_document_symbol_async(
+        types.DocumentSymbolParams(editor.document("urdf/parts.xacro"))
+    )
+    (macro,) = robot.children
+    assert (robot.name, macro.name, macro.kind) == ("robot", "xacro:macro bar", types.SymbolKind.Function)
+    assert [child.name for child in macro.children] == ["link ${name}", "joint ${name}_joint"]
+
+
+async def test_folds_selections_and_pairs_of_tags(editor):
+    text = (editor.folder / "urdf/parts.xacro").read_text()
+    editor.open("urdf/parts.xacro")
+    document = editor.document("urdf/parts.xacro")
+    folds = await editor.client.text_document_folding_range_async(types.FoldingRangeParams(document))
+    assert [(fold.start_line, fold.end_line) for fold in folds] == [(0, 8), (1, 7), (3, 6)]
+    (selection,) = await editor.client.text_document_selection_range_async(
+        types.SelectionRangeParams(document, [place(text, "continuous", 2)])
+    )
+    lengths = []
+    while selection is not None:
+        start, end = selection.range.start, selection.range.end
+        lengths.append((end.line - start.line, end.character - start.character))
+        selection = selection.parent
+    written = ("continuous", 'type="continuous"', '<joint name="${name}_joint" type="continuous">')
+    assert lengths[:3] == [(0, len(each)) for each in written]
+    linked = await editor.client.text_document_linked_editing_range_async(
+        types.LinkedEditingRangeParams(document, place(text, "<joint", 3))
+    )
+    assert [each.start.line for each in linked.ranges] == [3, 7]
+
+
+async def test_a_finding_is_fixed_by_its_action(editor):
+    (editor.folder / "linkwright.toml").write_text('select = ["LW221"]\n')
+    text = (editor.folder / "urdf/parts.xacro").read_text().replace('xyz="0 0 1"', 'xyz="0 0 2"')
+    editor.open("urdf/parts.xacro", text)
+    (found,) = await editor.until("urdf/parts.xacro", "LW221")
+    asked = types.CodeActionParams(editor.document("urdf/parts.xacro"), found.range, types.CodeActionContext([found]))
+    fix, everything = await editor.client.text_document_code_action_async(asked)
+    for action in (fix, everything):
+        ((edit,),) = action.edit.changes.values()
+        assert edit.new_text == "0 0 1"
+    assert [fix.kind, everything.kind] == [types.CodeActionKind.QuickFix, types.CodeActionKind.SourceFixAll]
+
+
+async def test_files_that_are_no_xml_have_no_symbols(editor):
+    editor.open("CMakeLists.txt")
+    asked = types.DocumentSymbolParams(editor.document("CMakeLists.txt"))
+    assert await editor.client.text_document_document_symbol_async(asked) is None
