@@ -23,7 +23,7 @@ def actions(
     uri: Callable[[Path], str],
     reported: Iterable[types.Diagnostic],
 ) -> list[types.CodeAction]:
-    """Return the fixes of the findings about a file that touch a range, and a fix of all that are safe.
+    """Return the fixes of the findings about a file that touch a range, and a fix of all safe ones.
 
     Args:
         findings: the findings about the file.
