@@ -1,11 +1,11 @@
 """Linkwright: a ROS 2 workbench for a robot, without installing ROS.
 
-The names below are the way in for programs. Each is loaded when a program first uses it.
+The names below are the entry points for programs. Each is loaded when a program first uses it.
 """
 
 from linkwright._version import __version__
 
-TYPE_CHECKING = False  # true to type checkers, by its name; nothing more may be loaded before Ctrl-C is handled
+TYPE_CHECKING = False  # type checkers assume True; importing typing would load more before Ctrl-C is handled
 if TYPE_CHECKING:
     from linkwright.bag.reading import open_recording
     from linkwright.descriptions.service import load
@@ -44,7 +44,7 @@ _MODULES = {
 
 
 def __getattr__(name: str) -> object:
-    if name not in __all__:  # such as a module that is about to be imported
+    if name not in __all__:  # raised for, among others, a submodule that is about to be imported
         raise AttributeError(f"module 'linkwright' has no attribute '{name}'")
     from linkwright.loading.deferred import deferred
 
