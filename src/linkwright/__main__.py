@@ -1,4 +1,4 @@
-"""``python -m linkwright``."""
+"""Entry point of ``python -m linkwright``."""
 
 from linkwright.cli import main
 
