@@ -1,4 +1,4 @@
-"""Recordings of topics: rosbag2's folders with MCAP or SQLite files."""
+"""Recordings of topics: rosbag2 folders with MCAP or SQLite files."""
 
 from typing import TYPE_CHECKING
 

@@ -1,8 +1,8 @@
-"""MCAP files that hold more than ROS 2, as Foxglove and users' own programs write them.
+"""Read MCAP files that contain more than ROS 2 data, such as those of Foxglove and users' own programs.
 
 The library refuses the whole file if its profile is not ``ros2``, or if a schema is in a language other than those of
-ROS 2 (JSON, Protobuf, ROS 1 ...). The library therefore reads substitutes of equal length: the profile ``ros2``, and
-empty schemas. `BagReader` leaves out topics of other encodings, and reports them.
+ROS 2 (JSON, Protobuf, ROS 1 ...). Therefore the library reads substitutes of equal length instead: the profile
+``ros2``, and empty schemas. `BagReader` leaves out topics with other encodings, and reports them.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _LENGTH, _ID = struct.Struct("<I"), 2
 
 
 def patches_of(path: Path) -> dict[int, bytes]:
-    """The patches that make a finished file with an index readable for the library: offset -> bytes."""
+    """Return the patches, offset -> bytes, that let the library read a finished file with an index."""
     with path.open("rb") as file:
         patches = header_patch(file)
         file.seek(-HEAD.size - FOOTER_BODY.size - len(MAGIC), 2)
@@ -40,7 +40,7 @@ def patches_of(path: Path) -> dict[int, bytes]:
 
 
 def header_patch(file: BinaryIO) -> dict[int, bytes]:
-    """The patch that sets the profile to ``ros2``, in the room of the name of the program that wrote the file."""
+    """Return the patch that sets the profile to ``ros2``, using the space of the name of the writing program."""
     file.seek(len(MAGIC))
     head = file.read(HEAD.size)
     if len(head) < HEAD.size:
@@ -56,11 +56,11 @@ def header_patch(file: BinaryIO) -> dict[int, bytes]:
 
 
 def schema_patch(place: int, body: bytes) -> dict[int, bytes]:
-    """The patch that removes a schema's text in a language that is none of ROS 2's.
+    """Return the patch that removes the text of a schema that is not in a language of ROS 2.
 
     Args:
-        place: of its body in the file.
-        body: of its record.
+        place: the offset of the body of its record in the file.
+        body: the body of its record.
     """
     parts = _texts(body, _ID, 3)
     if parts is None or parts[1] in _LANGUAGES:
@@ -70,12 +70,12 @@ def schema_patch(place: int, body: bytes) -> dict[int, bytes]:
 
 
 def known_schema(body: bytes) -> bytes:
-    """The body of a schema's record, as the library can read it."""
+    """Return the body of a schema's record in a form that the library can read."""
     return body[:_ID] + schema_patch(0, body).get(_ID, body[_ID:])
 
 
 def _texts(body: bytes, place: int, count: int) -> list[bytes] | None:
-    """Texts that follow one another, each behind its length; None if they are cut off."""
+    """Return consecutive length-prefixed strings; None if they are truncated."""
     found = []
     for _ in range(count):
         if place + _LENGTH.size > len(body):

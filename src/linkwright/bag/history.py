@@ -1,13 +1,13 @@
-"""The messages of the last minutes in memory, within a number of bytes, as a recording that can be played.
+"""The messages of the last minutes in memory, up to a number of bytes, as a recording that can be played.
 
-Three measures make room for minutes. A state that does not change is stored sparsely: of messages that differ only in
-their stamps, the first and the newest are kept. Of a simulated clock, only the messages beside those of other topics
-are kept. Of large messages (images, clouds), older ones are thinned when the memory is full: the older, the sparser.
+Three measures make room for minutes. First, a state that does not change is stored sparsely: of messages that differ
+only in their stamps, the first and the newest are kept. Second, of a simulated clock, only the messages close to
+messages of other topics are kept. Third, older large messages (images, clouds) are thinned out when the memory is full:
+the older, the sparser.
 
-Zstandard compression of large messages in memory, in a thread, where it makes them clearly smaller.
-
-Images and clouds of a simulation shrink to a tenth or a hundredth; those with the noise of a real sensor hardly shrink.
-The quickest level finds out at once which kind a message is.
+Large messages are compressed with Zstandard in memory, in a thread, if that makes them clearly smaller. Images and
+clouds of a simulation shrink to a tenth or a hundredth; those with the noise of a real sensor hardly shrink. The
+fastest compression level quickly shows which kind a message is.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Packed(bytes):
 
 @cache
 def _zstd() -> Any:
-    """The library; None if the extra `bag` is not installed."""
+    """Return the compression library; None if the extra `bag` is not installed."""
     if sys.version_info >= (3, 14):
         from compression import zstd
     else:
@@ -61,15 +61,15 @@ def _zstd() -> Any:
 
 
 def whole(data: bytes) -> bytes:
-    """The original bytes of a message."""
+    """Return the original bytes of a message that may be compressed."""
     return bytes(_zstd().decompress(data)) if type(data) is Packed else data
 
 
 class Shrinker(Generic[K]):
-    """Compresses messages in a thread of its own, which the first large one starts.
+    """Compresses messages in a separate thread, which the first large message starts.
 
     Args:
-        done: called in that thread with the key of a message and it packed.
+        done: called in that thread with the key of a message and its compressed form.
     """
 
     def __init__(self, done: Callable[[K, Packed], object]) -> None:
@@ -80,7 +80,7 @@ class Shrinker(Generic[K]):
         self._lock = threading.Lock()
 
     def offer(self, key: K, data: bytes) -> None:
-        """Compress a message when there is time, if it is large."""
+        """Queue a message for compression if it is large."""
         if len(data) < _LEAST_BYTES or _zstd() is None:
             return
         with self._lock:
@@ -129,10 +129,12 @@ _Kept = tuple[int, int, bytes]
 
 
 class _Track:
-    """The messages of one topic. The last message before those that were dropped is kept, for the state at a time.
+    """The messages of one topic.
+
+    The last of the dropped messages is kept, for the state at a time.
 
     Args:
-        name: of the topic.
+        name: the name of the topic.
     """
 
     def __init__(self, name: str) -> None:
@@ -150,7 +152,7 @@ class _Track:
 
     @property
     def can_be_thinned(self) -> bool:
-        """Whether it has enough large messages, and goes back not too far; transforms never."""
+        """Whether it has enough large messages and does not reach back too far; never for transforms."""
         if len(self) < _FREED or self.size < _LARGE * len(self) or self.name in (TRANSFORMS, STATIC_TRANSFORMS):
             return False
         return self.kept[-1][0] - self.kept[self.first][0] < _LONGEST_NS
@@ -161,11 +163,13 @@ class _Track:
         self.size += _size(data)
 
     def repeat(self, stamp_ns: int, number: int, data: bytes, content: Content) -> int | None:
-        """Keep a message in place of an equal one, if there is one; return the additional bytes, or None.
+        """Replace an equal earlier message, if there is one; return the additional bytes, or None.
 
-        The first message of a run stays, and so does the time of the second, which is always the newest: a reader
-        between the two gets the state of that time, with a stamp that is not too old. For a clock, the second message
-        has the newest time, too: the clock ran evenly between the two, see `clock_at`.
+        The first message of a run is kept, and so is the time of the second, which is always the newest. A reader
+        between the
+        two gets the state at that time, with a stamp that is not too old. For a clock, the second message has the
+        newest time
+        too: the clock ran evenly between the two, see `clock_at`.
         """
         run = self._runs.get(content.what)
         if run is None or not run.content.is_repeated_by(content) or stamp_ns - run.since_ns >= _STILL_NS:
@@ -193,7 +197,7 @@ class _Track:
             del self.kept[: self.first]
             self.first = 0
         if self.name == TRANSFORMS:
-            return _size(oldest[2])  # only their last seconds are useful
+            return _size(oldest[2])  # only the last seconds of these are useful
         key = deserialize(whole(oldest[2]), TFMessage).batch.children if self.name == STATIC_TRANSFORMS else None
         replaced = self.before.pop(key, None)
         self.before[key] = oldest
@@ -222,22 +226,22 @@ class _Track:
         return freed
 
     def replace(self, number: int, packed: Packed) -> int:
-        """Replace a message by its packed form, by its number; return the freed bytes."""
+        """Replace the message with a number by its compressed form; return the freed bytes."""
         place = self._place(number)
         if place is None:
-            return 0  # it was dropped meanwhile
+            return 0  # it was dropped in the meantime
         stamp_ns, _, data = self.kept[place]
         self.kept[place] = stamp_ns, number, packed
         self.size -= len(data) - len(packed)
         return len(data) - len(packed)
 
     def _place(self, number: int) -> int | None:
-        """The index of a message, by its number; None when it has been dropped."""
+        """Return the index of the message with a number; None if it has been dropped."""
         place = bisect_left(self.kept, number, lo=self.first, key=lambda item: item[1])
         return place if place < len(self.kept) and self.kept[place][1] == number else None
 
     def lasting(self, start_ns: int, end_ns: int) -> list[_Kept]:
-        """Return the messages of an interval that were repeated after it."""
+        """Return the messages of an interval that were repeated after the interval."""
         return [item for item in self.between(start_ns, end_ns) if item[1] in self._lasting]
 
     def still_at(self, at_ns: int) -> list[_Kept]:
@@ -248,12 +252,12 @@ class _Track:
         return lasting[-1:] if lasting[-1:] == self.until(at_ns, 1) else []
 
     def until(self, at_ns: int, count: int) -> list[_Kept]:
-        """The last messages up to a time, up to a number."""
+        """Return the last messages up to a time, at most a given number of them."""
         end = bisect_right(self.kept, (at_ns, sys.maxsize), lo=self.first)
         return self.kept[max(self.first, end - count) : end]
 
     def clock_at(self, at_ns: int) -> list[_Kept]:
-        """The last message of a clock up to a time; if it represents several, the interpolated time."""
+        """Return the last message of a clock up to a time; if it represents several, return the interpolated time."""
         before = self.until(at_ns, 1)
         place = bisect_right(self.kept, (at_ns, sys.maxsize), lo=self.first)
         if not before or place == len(self.kept) or self.kept[place][1] not in self._lasting:
@@ -262,13 +266,13 @@ class _Track:
         return [(at_ns, number, clock_between(earlier, later, (at_ns - began_ns) / (end_ns - began_ns)))]
 
     def between(self, start_ns: int, end_ns: int) -> list[_Kept]:
-        """The messages from one time to another, both included."""
+        """Return the messages from one time to another, inclusive."""
         begin = bisect_left(self.kept, (start_ns,), lo=self.first)
         return self.kept[begin : bisect_right(self.kept, (end_ns, sys.maxsize), lo=self.first)]
 
 
 class _Run:
-    """Messages of a topic with one content: since when they come, and the number of the second."""
+    """A run of messages of a topic with equal content: its start time, and the number of its second message."""
 
     __slots__ = ("content", "second", "since_ns")
 
@@ -279,19 +283,19 @@ class _Run:
 
 
 class History:
-    """Keeps messages until newer ones take their room; it can be played while it is being filled.
+    """Keeps messages until newer ones need their space; it can be played while it is being filled.
 
-    Messages may be added in any thread. Their times never go back, whatever the clock does. Large ones are packed
-    where that makes them smaller, see `shrinking`.
+    Messages may be added from any thread. Their times never decrease, whatever the clock does. Large messages are
+    compressed if that makes them smaller, see `shrinking`.
 
     Args:
-        most_bytes: how many bytes it may take; a message that alone is larger is not kept.
-        now_ns: returns the current time, nanoseconds since the epoch.
+        most_bytes: the maximum number of bytes; a message that alone is larger is not kept.
+        now_ns: returns the current time, in nanoseconds since the epoch.
 
     Attributes:
-        lock: held while a message is added; to know that none is, hold it.
-        size: bytes that it takes.
-        count: how many messages were ever added.
+        lock: held while a message is added; hold it to prevent that.
+        size: the number of bytes in use.
+        count: the number of messages ever added.
     """
 
     def __init__(self, most_bytes: int, now_ns: Callable[[], int]) -> None:
@@ -309,7 +313,7 @@ class History:
         self._shrinker = Shrinker(self._replace)
 
     def add(self, topic: str, data: bytes, at_ns: int | None = None, content: Content | None = None) -> None:
-        """Add a message received now, or at another time after those that are kept.
+        """Add a message received now, or at another time later than the messages that are kept.
 
         With its content, see `stillness`, it takes no extra memory if it only repeats earlier messages.
         """
@@ -341,18 +345,20 @@ class History:
         self._shrinker.offer((track, number), data)
 
     def close(self) -> None:
-        """Stop packing; the messages are kept as they are."""
+        """Stop compressing; the messages are kept."""
         self._shrinker.close()
 
     def _as_time_passes(self, content: Content, clock_ns: int) -> Content:
-        """Return the content of a clock, which repeats while no other message arrives and time is not reset."""
+        """Return the content of a clock message; it counts as repeated while no other message arrives and time is not
+        reset.
+        """
         if clock_ns < self._clock_ns:
             self._changes += 1
         self._clock_ns = clock_ns
         return content._replace(state=b"%d" % self._changes)
 
     def _make_room(self) -> bool:
-        """Thin large messages, or drop the oldest message of all; return whether there was one."""
+        """Thin out large messages, or drop the oldest message of all; return whether there was one."""
         large = self._largest
         if large is not None and large.size > self.most_bytes // 2 and large.can_be_thinned:
             freed = large.thin(self.most_bytes // _FREED)
@@ -365,13 +371,13 @@ class History:
         return True
 
     def _queue(self, track: _Track) -> None:
-        """Note a track by its oldest message."""
+        """Add a track to the queue, ordered by its oldest message."""
         if not track.is_queued and len(track) > 0:
             track.is_queued = True
             heappush(self._oldest, (track.kept[track.first][1], track.name, track))
 
     def _first(self) -> _Track | None:
-        """The track with the oldest message of all; None where nothing is kept."""
+        """Return the track with the oldest message of all; None if nothing is kept."""
         while self._oldest:
             number, _, track = self._oldest[0]
             if len(track) > 0 and track.kept[track.first][1] == number:
@@ -388,22 +394,24 @@ class History:
 
     @property
     def start_ns(self) -> int:
-        """The time of the oldest message, nanoseconds since the epoch; the current time if there is none."""
+        """The time of the oldest message, in nanoseconds since the epoch; the current time if there is none."""
         with self.lock:
             oldest = self._first()
             return self.end_ns if oldest is None else oldest.kept[oldest.first][0]
 
     @property
     def end_ns(self) -> int:
-        """Now: the state of the present is the last message of each topic."""
+        """The current time: the current state is the last message of each topic."""
         return max(self._newest_ns, self._now_ns())
 
     def messages(self, topics: Collection[str], start_ns: int) -> Iterator[Recorded]:
-        """The messages of some topics from a time on; after its end it may be continued when others came."""
+        """Yield the messages of topics from a time on; after its end, the iterator continues when new messages arrive.
+        """
         return _Onward(self, topics, start_ns)
 
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
-        """The last message of each topic up to a time, of ``/tf`` those of two seconds, of ``/tf_static`` all."""
+        """Return the last message of each topic up to a time; for ``/tf`` those of two seconds, for ``/tf_static`` all.
+        """
         static: list[Recorded] = []
         found: list[Recorded] = []
         with self.lock:
@@ -426,17 +434,21 @@ class History:
         return static + sorted(found, key=lambda item: item[1])
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
-        """When the last message before a time was received, nanoseconds since the epoch; None where there is none."""
+        """Return when the last message before a time was received, in nanoseconds since the epoch; None if there is
+        none.
+        """
         with self.lock:
             last = [self._tracks[name].until(at_ns - 1, 1) for name in topics if name in self._tracks]
             return max((item[0][0] for item in last if item), default=None)
 
     def part(self, start_ns: int, end_ns: int) -> list[Recorded]:
-        """Return the messages from one time to another, both included, in the order of their times.
+        """Return the messages from one time to another, inclusive, in the order of their times.
 
         The messages needed to show the state at the beginning come first (see `state_at`), stamped with that time. The
-        states that are still unchanged at the end follow. Messages stay packed, because many unpacked ones would be too
-        large together, see `whole`.
+        states
+        that are still unchanged at the end follow. Messages stay compressed, because many uncompressed messages
+        together would
+        be too large, see `whole`.
         """
         with self.lock:
             before = self.state_at(list(self._tracks), start_ns - 1)
@@ -450,7 +462,7 @@ class History:
         ]
 
     def after(self, topics: Collection[str], start_ns: int, number: int) -> tuple[int, Recorded] | None:
-        """The first message of some topics from a time on that is not among the first `number`, and its number."""
+        """Return the first message of topics from a time on that is not among the first `number`, and its number."""
         best: tuple[_Kept, str] | None = None
         with self.lock:
             for name in topics:
@@ -467,7 +479,7 @@ class History:
 
 
 class _Onward(Iterator[Recorded]):
-    """Messages in the order of their times; it continues after its end when new messages arrive."""
+    """Iterates over messages in the order of their times; after its end, it continues when new messages arrive."""
 
     def __init__(self, history: History, topics: Collection[str], start_ns: int) -> None:
         self._history = history

@@ -1,8 +1,8 @@
-"""Single messages of an MCAP file, found by its indexes without reading the data in between.
+"""Find single messages of an MCAP file by its indexes, without reading the data in between.
 
-The index of chunks at the end of the file lists the chunks that have messages of a channel, and where the index of each
-chunk is. That index gives the times and offsets within the chunk (the MCAP specification). So one chunk is unpacked for
-a message, however long the file is.
+The chunk index at the end of the file lists the chunks that have messages of a channel, and where the index of each
+chunk is. That index gives the times and offsets within the chunk (the MCAP specification). So only one chunk is
+decompressed per message, however long the file is.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class McapLookup:
         self._unpacked: OrderedDict[int, bytes] = OrderedDict()
 
     def latest(self, channels: Collection[int], at_ns: int) -> tuple[int, bytes] | None:
-        """The last message of some channels up to a time, and its own time; None where there is none."""
+        """Return the last message of channels up to a time, as its time and data; None if there is none."""
         best: tuple[int, ChunkInfo, int] | None = None
         for channel in channels:
             for chunk, latest_end in self._of(channel).backwards(at_ns):
@@ -57,7 +57,7 @@ class McapLookup:
         return None if best is None else (best[0], self._message(best[1], best[2]))
 
     def between(self, channels: Collection[int], start_ns: int, end_ns: int) -> list[tuple[int, bytes]]:
-        """The messages of some channels from one time to another, both included, with their times, in their order."""
+        """Return the messages of channels from one time to another, inclusive, with their times, in order."""
         found = []
         for channel in channels:
             chunks = [each for each, _ in self._of(channel).backwards(end_ns) if each.message_end_time >= start_ns]
@@ -76,8 +76,8 @@ class McapLookup:
         """Yield the message counts of a channel by intervals: start and end in nanoseconds, and the count.
 
         Args:
-            channel: its number.
-            exact: yield each message by itself, instead of each chunk.
+            channel: the number of the channel.
+            exact: whether to yield each message separately instead of each chunk.
         """
         for chunk in self._of(channel).chunks:
             if exact:
@@ -92,7 +92,7 @@ class McapLookup:
         return self._chunks[channel]
 
     def _entries(self, chunk: ChunkInfo, channel: int) -> list[tuple[int, int]]:
-        """Times and places of the messages of a channel in a chunk, in the order of their times."""
+        """Return the times and offsets of the messages of a channel in a chunk, in the order of their times."""
         file: Any = self._storage.bio
         file.seek(chunk.message_index_offsets[channel])
         _, _, _, size = _INDEX_HEAD.unpack(file.read(_INDEX_HEAD.size))
@@ -132,6 +132,9 @@ class _ChannelChunks:
             self._latest_ends.append(max(chunk.message_end_time, self._latest_ends[-1] if self._latest_ends else 0))
 
     def backwards(self, at_ns: int) -> Iterator[tuple[ChunkInfo, int]]:
-        """The chunks that begin up to a time, backwards; each with the latest end of it and those before it."""
+        """Yield the chunks that begin up to a time, from last to first.
+
+        Each is yielded with the latest end time of that chunk and the chunks before it.
+        """
         for place in range(bisect_right(self._starts, at_ns) - 1, -1, -1):
             yield self.chunks[place], self._latest_ends[place]

@@ -1,4 +1,4 @@
-"""The state of a recording at a time: the last message of each topic, and transforms."""
+"""Find the state of a recording at a time: the last message of each topic, and transforms."""
 
 from __future__ import annotations
 
@@ -29,21 +29,22 @@ class Moments:
     """Finds the state of an open recording at any time.
 
     Args:
-        reader: of the library, open.
+        reader: the library's reader, open.
     """
 
     def __init__(self, reader: Reader) -> None:
         self._reader = reader
 
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
-        """The last message of each topic up to a time, of ``/tf`` those of two seconds, of ``/tf_static`` all.
+        """Return the last message of each topic up to a time; for ``/tf`` those of two seconds, for ``/tf_static`` all.
 
-        Where ``/tf`` paused for longer, they are those of the two seconds before it did. Topics of these names in a
-        namespace are such, too.
+        If ``/tf`` paused for longer, they are the messages of the two seconds before the pause. Topics with these names
+        in a
+        namespace are treated in the same way.
 
         Args:
-            topics: which.
-            at_ns: the time, nanoseconds since the epoch.
+            topics: the topics.
+            at_ns: the time, in nanoseconds since the epoch.
 
         Returns:
             The messages in the order of their times, static transforms first.
@@ -62,13 +63,18 @@ class Moments:
         return found + sorted(moving, key=lambda item: item[1])
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
-        """When the last message before a time was received, nanoseconds since the epoch; None where there is none."""
+        """Return when the last message before a time was received, in nanoseconds since the epoch; None if there is
+        none.
+        """
         return max((stamp for _, stamp, _ in self._latest(topics, at_ns - 1)), default=None)
 
     def counts(self, parts: int) -> dict[str, list[int]]:
-        """The numbers of messages of each topic in equal parts of the recording; empty for a file without an index.
+        """Return the number of messages of each topic in equal parts of the recording; empty for a file without an
+        index.
 
-        Of a long recording the messages of a chunk, or of a short time, count as if they were spread evenly over it.
+        In a long recording, the messages of a chunk, or of a short time, are counted as if they were evenly distributed
+        over
+        it.
         """
         start, duration = self._reader.start_time, max(1, self._reader.duration)
 
@@ -88,7 +94,7 @@ class Moments:
 
     @cached_property
     def _lookups(self) -> list[tuple[Any, McapLookup | RowLookup]]:
-        """The lookups of the files, if all have an index and no singly packed messages; else none."""
+        """The lookups of the files, if all have an index and no individually compressed messages; otherwise empty."""
         storage: Any = self._reader.storage
         found: list[tuple[Any, McapLookup | RowLookup]] = []
         for part in getattr(storage, "storages", [storage]):
@@ -134,7 +140,7 @@ class Moments:
         ]
 
     def _latest_without_index(self, topics: Collection[str], at_ns: int) -> Iterator[Recorded]:
-        """Read longer and longer times before, until all are found."""
+        """Yield the last messages, by reading ever longer times before, until all are found."""
         missing = set(topics)
         end, length = at_ns + 1, _FIRST_WINDOW_NS
         while missing and end > self._reader.start_time:

@@ -1,4 +1,4 @@
-"""The names that all parts of this room use: files of recordings, topics of transforms, and messages."""
+"""Names that all parts of this package use: files of recordings, topics of transforms, and messages."""
 
 from __future__ import annotations
 
@@ -30,30 +30,30 @@ _NUMBERED = re.compile(r"(.+)_(0|[1-9][0-9]*)(\.mcap|\.db3)((?:\.zstd)?)")
 
 
 def numbered(folder: Path, number: int, suffix: str) -> Path:
-    """The path of a file of a recording, as rosbag2 names it: the folder's name and the number, counted from 0."""
+    """Return the path of a recording's file, as rosbag2 names it: the folder's name and the number, counted from 0."""
     return folder / f"{Path(folder.absolute()).name}_{number}{suffix}"
 
 
 def storage_of(path: Path) -> str | None:
-    """The storage of a recording's file, compressed or not, by its name; None for another file."""
+    """Return the storage format of a recording's file, compressed or not, from its name; None for another file."""
     return SUFFIXES.get(Path(path.name.removesuffix(PACKED)).suffix)
 
 
 def is_recording(path: Path) -> bool:
-    """Whether a path is that of a recording, by its names: of its file, or of the folder with its metadata or files."""
+    """Return whether a path looks like a recording: a recording's file, or a folder with its metadata or files."""
     if not path.is_dir():
         return storage_of(path) is not None or path.suffix == ROS1
     return (path / METADATA).exists() or any(storage_of(entry) is not None for entry in path.iterdir())
 
 
 def in_order(files: Sequence[Path]) -> list[Path]:
-    """The files of a recording by their numbers."""
+    """Return the files of a recording, sorted by number."""
     found = [(int(match[2]) if (match := _NUMBERED.fullmatch(file.name)) else 0, file) for file in files]
     return [each for _, each in sorted(found)]
 
 
 def are_of_one_recording(files: Sequence[Path]) -> bool:
-    """Return whether several files are the parts of one recording, by their names: numbered one after the other."""
+    """Return whether files are the parts of one recording, judging by their names: they have consecutive numbers."""
     found = [_NUMBERED.fullmatch(file.name) for file in files]
     numbers = sorted(int(match[2]) for match in found if match is not None)
     alike = {(match[1], match[3], match[4]) for match in found if match is not None}

@@ -1,6 +1,6 @@
-"""Compressed files of recordings whose metadata are missing, after a copy of the file alone or a kill.
+"""Read compressed files of recordings whose metadata are missing, because only the file was copied or after a kill.
 
-rosbag2 compresses files as a whole, or their messages one by one; only ``metadata.yaml`` states which.
+rosbag2 compresses whole files, or messages one by one; only ``metadata.yaml`` states which.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _MAGIC = b"\x28\xb5\x2f\xfd"
 
 
 def unpacked(path: Path, folder: Path) -> Path:
-    """Decompress a file into a folder; of one that was cut off, its available part.
+    """Decompress a file into a folder and return the path; of a truncated file, decompress the available part.
 
     Raises:
         zstd.ZstdError: it is not compressed with zstd.
@@ -40,10 +40,10 @@ def unpacked(path: Path, folder: Path) -> Path:
 
 
 def unpack_messages(reader: Reader) -> None:
-    """Let the reader of a single file decompress messages, if the first one is packed.
+    """Make the reader of a single file decompress messages, if the first one is compressed.
 
     Args:
-        reader: of the library, open.
+        reader: the library's reader, open.
     """
     storage: Any = reader.storage
     first = next(iter(reader.messages()), None) if reader.message_count else None

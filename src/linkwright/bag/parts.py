@@ -1,4 +1,4 @@
-"""The files that a recording consists of, and the ``metadata.yaml`` that lists them."""
+"""Write the files that a recording consists of, and the ``metadata.yaml`` that lists them."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ class Part:
     """A file of a recording that is being written.
 
     Args:
-        path: the file to make, with its suffix.
+        path: the file to create, with its suffix.
         compression: one of `linkwright.bag.writing.COMPRESSIONS`.
         custom_data: additional entries of the metadata.
 
     Attributes:
-        start_ns: when its first message was received, nanoseconds since the epoch; None before there is one.
-        path: the file; compressed as a whole, it has another suffix behind its own once it is closed.
+        start_ns: when its first message was received, in nanoseconds since the epoch; None before there is one.
+        path: the file; if it is compressed as a whole, it has a second suffix once it is closed.
     """
 
     def __init__(self, path: Path, compression: str, custom_data: Mapping[str, str]) -> None:
@@ -57,7 +57,7 @@ class Part:
 
     @property
     def size(self) -> int:
-        """The bytes written so far, with the buffered ones."""
+        """The number of bytes written so far, including buffered ones."""
         storage = self.storage
         if hasattr(storage, "conn"):
             (pages,) = storage.conn.execute("PRAGMA page_count").fetchone()
@@ -77,7 +77,7 @@ class Part:
         self.start_ns = stamp_ns if self.start_ns is None else min(self.start_ns, stamp_ns)
 
     def flush(self) -> None:
-        """Hand all written messages to the operating system."""
+        """Pass all written messages to the operating system."""
         storage = self.storage
         if hasattr(storage, "close_chunk"):
             if storage.chunk.msgs:
@@ -88,7 +88,7 @@ class Part:
 
     def close(self) -> _Metadata:
         """Write the index; return the metadata of this file alone."""
-        with ScratchFolder("bag") as folder:  # the library writes them there
+        with ScratchFolder("bag") as folder:  # the library writes the metadata there
             self._writer.metapath = Path(folder) / METADATA
             self._writer.close()
             document = yaml.safe_load(self._writer.metapath.read_text(encoding="utf-8"))
@@ -97,7 +97,7 @@ class Part:
         return information
 
     def abort(self) -> None:
-        """Give the file up as it is."""
+        """Abandon the file without finishing it."""
         self._writer.abort()
 
 
@@ -105,20 +105,20 @@ def write_metadata(folder: Path, parts: Sequence[_Metadata]) -> None:
     """Write the ``metadata.yaml`` of a recording.
 
     Args:
-        folder: of the recording.
-        parts: the metadata of each file, one or more.
+        folder: the folder of the recording.
+        parts: the metadata of each file, at least one.
     """
     write_information(folder, _joined(parts))
 
 
 def write_information(folder: Path, information: _Metadata) -> None:
-    """Write a ``metadata.yaml`` with these metadata."""
+    """Write the given metadata to a ``metadata.yaml``."""
     text = yaml.safe_dump({INFORMATION: information}, sort_keys=False, allow_unicode=True)
     whole_files.write_whole_file(folder / METADATA, text)
 
 
 def _joined(parts: Sequence[_Metadata]) -> _Metadata:
-    """Return the joined metadata of several files."""
+    """Return the combined metadata of several files."""
     files = [item for part in parts for item in part["files"]]
     spans = [
         (file["starting_time"]["nanoseconds_since_epoch"], file["duration"]["nanoseconds"])
@@ -143,14 +143,14 @@ def _joined(parts: Sequence[_Metadata]) -> _Metadata:
 
 
 def _let_any_thread_close(storage: Any) -> None:
-    """Connect to a database again: the library's connection may be used in one thread only."""
+    """Reconnect to the database, because the library's connection may be used only in one thread."""
     storage.conn.close()
     storage.conn = sqlite3.connect(f"file:{storage.path}", uri=True, check_same_thread=False)
     storage.cursor = storage.conn.cursor()
 
 
 class _File:
-    """A file in the place of the folder that the library makes its file in."""
+    """A file that replaces the folder in which the library would create its file."""
 
     def __init__(self, path: Path) -> None:
         self.name = path.stem

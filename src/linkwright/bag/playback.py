@@ -1,7 +1,7 @@
-"""Playing a recording from any of its times: play, pause, seek, step, speed, loop.
+"""Play a recording from any time: play, pause, seek, step, speed, loop.
 
-A recording in a file and the history of the last minutes are played the same way: messages are published as bytes, with
-the time at which they were received, and subscribers need not know that they are not live.
+A recording in a file and the history of the last minutes are played in the same way: messages are published as bytes,
+with the time at which they were received, and subscribers need not know that they are not live.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SLOWEST, FASTEST = 0.1, 10.0
 
 
 class Recording(Protocol):
-    """The interface of recordings to be played: messages by their times, nanoseconds since the epoch."""
+    """The interface of recordings that can be played: messages by time, in nanoseconds since the epoch."""
 
     @property
     def start_ns(self) -> int:
@@ -34,48 +34,48 @@ class Recording(Protocol):
 
     @property
     def end_ns(self) -> int:
-        """The time of the last one."""
+        """The time of the last message."""
 
     def messages(self, topics: Collection[str], start_ns: int, /) -> Iterator[Recorded]:
-        """The messages of some topics from a time on, in the order of their times."""
+        """Yield the messages of topics from a time on, in the order of their times."""
 
     def state_at(self, topics: Collection[str], at_ns: int, /) -> list[Recorded]:
-        """The state at a time: the last message of each topic, and transforms."""
+        """Return the state at a time: the last message of each topic, and transforms."""
 
     def time_before(self, topics: Collection[str], at_ns: int, /) -> int | None:
-        """When the last message before a time was received; None where there is none."""
+        """Return when the last message before a time was received; None if there is none."""
 
 
 class Output(Protocol):
-    """The interface of destinations of messages."""
+    """The interface of destinations for played messages."""
 
     def wanted(self) -> frozenset[str]:
-        """The topics of the recording that have subscriptions."""
+        """Return the topics of the recording that have subscriptions."""
 
     def publish_time(self, stamp_ns: int, /) -> None:
-        """Set the time of the playback, nanoseconds since the epoch."""
+        """Set the time of the playback, in nanoseconds since the epoch."""
 
     def publish(self, topic: str, stamp_ns: int, data: bytes, /) -> None:
-        """Publish a message that was received at a time, nanoseconds since the epoch."""
+        """Publish a message that was received at a time, in nanoseconds since the epoch."""
 
 
 class Playback:
-    """A player of a recording.
+    """Plays a recording.
 
     Args:
         node: the node whose dispatcher runs it.
         recording: the recording to play.
-        output: the output of the messages.
+        output: the destination of the messages.
         failed: called with an error when the recording cannot be read further; playback is then paused.
 
     Attributes:
-        position_ns: the time that is shown; all messages up to it were published. Nanoseconds since the epoch.
+        position_ns: the current time, in nanoseconds since the epoch; all messages up to it have been published.
         playing: whether time advances.
-        speed: seconds of the recording in a real one.
+        speed: seconds of the recording per real second.
         loop: whether playback restarts at the end.
         seeks: the number of seeks, whether or not the recording could be read there.
-        changed: called when one of these changes other than by the passing of time.
-        on_reset: called when another time is shown, so that subscribers forget their state.
+        changed: called when one of these changes for a reason other than the passing of time.
+        on_reset: called when playback jumps to another time, so that subscribers drop their state.
     """
 
     def __init__(
@@ -101,7 +101,7 @@ class Playback:
 
     @property
     def start_ns(self) -> int:
-        """The time of the first message, nanoseconds since the epoch."""
+        """The time of the first message, in nanoseconds since the epoch."""
         return self._recording.start_ns
 
     @property
@@ -110,7 +110,7 @@ class Playback:
         return self._recording.end_ns
 
     def play(self) -> None:
-        """Play; at the end, from the beginning."""
+        """Start playing; at the end, restart from the beginning."""
         if self.playing:
             return
         if self._aim() >= self.end_ns:
@@ -121,7 +121,7 @@ class Playback:
         self._notify()
 
     def pause(self) -> None:
-        """Pause."""
+        """Pause the playback."""
         if self.playing:
             self._stop()
             self._notify()
@@ -132,15 +132,16 @@ class Playback:
         self._notify()
 
     def set_loop(self, loop: bool) -> None:
-        """Set whether to start again at the end."""
+        """Set whether to restart at the end."""
         self.loop = loop
         self._notify()
 
     def seek(self, stamp_ns: int) -> None:
-        """Jump to another time once the loop is free; of several pending seeks, only the newest counts.
+        """Jump to another time once the event loop is free; of several pending seeks, only the newest counts.
 
-        The new time is published at once, and subscribers forget their state when the clock goes back. The messages of
-        that state therefore follow one turn of the loop later.
+        The new time is published immediately, and subscribers drop their state when the clock goes back. Therefore the
+        messages
+        of the new state follow one iteration of the loop later.
         """
         pending = self._target_ns is not None
         self._target_ns = min(self.end_ns, max(self.start_ns, stamp_ns))
@@ -151,7 +152,7 @@ class Playback:
         """Pause, and step to the next or the previous message.
 
         Args:
-            forward: whether to step to the next one.
+            forward: whether to step to the next message.
             topic: the topic whose messages count; all subscribed topics if empty.
         """
         self.pause()
@@ -171,10 +172,10 @@ class Playback:
             self._fail(error)
 
     def _step_to_next_of(self, topic: str) -> None:
-        """Play up to the next message of a topic; where that is too much for a turn, jump there."""
+        """Play up to the next message of a topic; jump there if that is too much for one iteration of the loop."""
         following = next(self._recording.messages({topic}, self._aim() + 1), None)
         if self._target_ns is None:
-            self._open_stream()  # of a file, only one can be read at a time
+            self._open_stream()  # a file supports only one open stream
             if following is not None:
                 self._show_until(following[1])
         if following is not None and self._aim() < following[1]:
@@ -182,13 +183,14 @@ class Playback:
         self._notify()
 
     def take_over(self, stamp_ns: int) -> None:
-        """Continue from a time whose state listeners have already."""
+        """Continue from a time whose state listeners already have."""
         self.position_ns, self._target_ns = stamp_ns, None
         self._wanted = self._output.wanted()
         self._open_stream()
 
     def before(self, topics: Collection[str], length_ns: int, most_bytes: int) -> list[Recorded]:
-        """The messages of some topics in a duration before the playback's time; none if they exceed some bytes."""
+        """Return the messages of topics in the given duration before the current time; empty if they exceed some bytes.
+        """
         found: list[Recorded] = []
         size = 0
         try:
@@ -200,13 +202,13 @@ class Playback:
                     found = []
                     break
                 found.append(message)
-            self._open_stream()  # of a file, only one can be read at a time
+            self._open_stream()  # a file supports only one open stream
         except LinkwrightError as error:
             self._fail(error)
         return found
 
     def review(self) -> None:
-        """Update the subscriptions: a topic with new ones begins with its last message."""
+        """Update the subscriptions; a topic with new subscriptions starts with its last message."""
         wanted = self._output.wanted()
         if wanted == self._wanted or self._target_ns is not None:
             return
@@ -224,7 +226,6 @@ class Playback:
         self.changed.clear()
         self._stream, self._next = iter(()), None
 
-    # -----------------------------------------------------------------------------------------------------------
 
     def _aim(self) -> int:
         return self.position_ns if self._target_ns is None else self._target_ns
@@ -251,7 +252,7 @@ class Playback:
         self._notify()
 
     def _open_stream(self) -> None:
-        """Continue after the last published message."""
+        """Open the stream of messages after the last published one."""
         self._stream = self._recording.messages(self._wanted, self.position_ns + 1) if self._wanted else iter(())
         self._next = next(self._stream, None)
 
@@ -262,7 +263,7 @@ class Playback:
         now = self._steady_ns()
         passed, self._ticked_ns = now - self._ticked_ns, now
         if self._target_ns is None:
-            end = self.end_ns  # it advances while the recording is still being written
+            end = self.end_ns  # it grows while the recording is still being written
             try:
                 self._show_until(min(end, self.position_ns + round(passed * self.speed)))
             except LinkwrightError as error:
@@ -276,10 +277,10 @@ class Playback:
         self._set_alarm()
 
     def _show_until(self, stamp_ns: int) -> None:
-        """Publish the messages up to a time, or as many as go in one turn."""
+        """Publish the messages up to a time, or as many as one iteration of the loop allows."""
         self._output.publish_time(stamp_ns)
         if self._next is None:
-            self._next = next(self._stream, None)  # a recording in progress has grown
+            self._next = next(self._stream, None)  # a recording in progress may have grown
         size = 0
         for _ in range(_MOST_MESSAGES):
             if self._next is None or self._next[1] > stamp_ns:

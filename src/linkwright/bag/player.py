@@ -1,4 +1,4 @@
-"""Plays a recording: publishes its messages at the intervals at which they were received."""
+"""Play a recording: publish its messages at the intervals at which they were received."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ _SHORTEST_ROUND_NS = 1_000_000
 
 @dataclass(frozen=True)
 class PlayOptions:
-    """Options of playing.
+    """The options of playing.
 
     Attributes:
         rate: the speed; 2.0 is twice the speed of the recording.
-        topics: play only these; all when empty.
-        without: play none of these.
+        topics: the topics to play; all if empty.
+        without: the topics not to play.
         pattern: a regular expression; without `topics`, play only topics whose names contain a match.
-        without_pattern: a regular expression; play no topic whose name contains a match.
-        loop: restart at the end, for ever.
-        clock_hz: the rate of the recording's time on ``/clock``; 0 publishes none.
-        clock_topics: publish the time before each message of these, too.
-        clock_before_all: publish the time before each message.
+        without_pattern: a regular expression; topics whose names contain a match are not played.
+        loop: whether to restart at the end, without a limit.
+        clock_hz: the rate of the recording's time on ``/clock``; 0 to publish no clock.
+        clock_topics: topics before each of whose messages the time is published too.
+        clock_before_all: whether to publish the time before each message.
         delay: seconds to wait at the beginning of each round.
         start_offset: seconds from the start of the recording to begin at.
         duration: seconds of the recording to play; None for all.
-        until_ns: play nothing after this time, nanoseconds since the epoch; None plays to the end.
+        until_ns: the time at which to end, in nanoseconds since the epoch; None to play to the end.
         paused: whether playback begins paused.
-        qos_overrides: topic -> profile to publish with.
+        qos_overrides: topic -> the profile to publish with.
     """
 
     rate: float = 1.0
@@ -62,11 +62,11 @@ class PlayOptions:
 
 
 class Player:
-    """Plays a recording; everything happens on the dispatcher of its node.
+    """Plays a recording; everything runs on the dispatcher of its node.
 
     Args:
         node: the node that publishes; its log reports events.
-        bag: the recording, which stays open as long as it is played.
+        bag: the recording, which stays open while it is played.
         options: how it is played.
 
     Raises:
@@ -99,42 +99,42 @@ class Player:
 
     @property
     def publishers(self) -> tuple[Publisher[Any], ...]:
-        """Its publishers."""
+        """The publishers of the played topics."""
         return tuple(self._publishers.values())
 
     @property
     def rate(self) -> float:
-        """The rate."""
+        """The playback rate."""
         return self._rate
 
     @property
     def paused(self) -> bool:
-        """Whether it is paused."""
+        """Whether playback is paused."""
         return self._paused
 
     def start(self) -> None:
-        """Start."""
+        """Start playing."""
         self._begin()
 
     def pause(self) -> None:
-        """Pause, unless it is paused."""
+        """Pause playback, unless it is paused already."""
         if not self._paused:
             self.toggle_paused()
 
     def resume(self) -> None:
-        """Resume, if it is paused."""
+        """Resume playback if it is paused."""
         if self._paused:
             self.toggle_paused()
 
     def toggle_paused(self) -> None:
-        """Pause, or resume."""
+        """Pause or resume playback."""
         self._anchor()
         self._paused = not self._paused
         self._logger.info("Pausing play." if self._paused else "Resuming play.")
         self._schedule()
 
     def set_rate(self, rate: float) -> None:
-        """Set the rate.
+        """Set the playback rate.
 
         Raises:
             ValueError: the rate is not positive, or not finite.
@@ -151,7 +151,7 @@ class Player:
         return self.burst(1) == 1
 
     def burst(self, count: int) -> int:
-        """Publish a number of messages while paused, or with 0 all of this round; return their number."""
+        """Publish a number of messages while paused, or all of this round for 0; return how many were published."""
         published = 0
         while (
             self._paused and self._next is not None and not self._is_beyond_end() and (published < count or not count)
@@ -164,7 +164,7 @@ class Player:
         return published
 
     def seek(self, time_ns: int) -> None:
-        """Jump to another time in the recording, nanoseconds since the epoch."""
+        """Jump to another time in the recording, in nanoseconds since the epoch."""
         self._anchor()
         self._read_from(max(time_ns, self._bag.start_ns))
         self._end_or_schedule()
@@ -177,7 +177,7 @@ class Player:
             self._alarm = None
 
     def now_ns(self) -> int:
-        """The current time in the recording, nanoseconds since the epoch."""
+        """Return the current time in the recording, in nanoseconds since the epoch."""
         if self._paused:
             return self._position_ns
         return self._position_ns + max(0, round((self._steady_ns() - self._since_ns) * self._rate))
@@ -238,7 +238,7 @@ class Player:
         self._alarm = self._node.handle.dispatcher.call_at(self._since_ns + max(0, wait_ns), self._run)
 
     def _anchor(self) -> None:
-        """Set the origin of the playing time to now, because the rate is about to change."""
+        """Use the current moment as the origin of the playback time, because the rate is about to change."""
         self._position_ns = self.now_ns()
         self._since_ns = self._steady_ns()
 
@@ -250,7 +250,7 @@ class Player:
     def _make_publishers(self) -> dict[str, Publisher[Any]]:
         options = self._options
         topics = {topic.name: topic for topic in self._bag.topics}
-        self._bag.messages(list(options.topics))  # a name that does not exist is reported before playback starts
+        self._bag.messages(list(options.topics))  # reports a name that does not exist before playback starts
         selection = TopicSelection(
             everything=not options.pattern,
             names=options.topics,

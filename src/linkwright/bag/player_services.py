@@ -1,4 +1,4 @@
-"""The services that control a player, those of rosbag2: ``/rosbag2_player/pause`` and so on."""
+"""The services that control a player, as in rosbag2: ``/rosbag2_player/pause`` and so on."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class PlayerServices:
 
     Args:
         node: the node.
-        player: the player that they control.
+        player: the player that the services control.
     """
 
     def __init__(self, node: Node, player: Player) -> None:

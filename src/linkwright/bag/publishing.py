@@ -1,4 +1,4 @@
-"""The publishers of a recording's topics."""
+"""Create the publishers of a recording's topics."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _LATCHED_QOS = QoSProfile(100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 def make_publishers(
     node: Node, topics: Iterable[BagTopic], overrides: Mapping[str, QoSProfile] | None = None
 ) -> dict[str, Publisher[Any]]:
-    """Make a publisher for each topic, with the quality of service it was recorded with; unknown types are logged.
+    """Create a publisher for each topic, with its recorded quality of service; unknown types are logged.
 
     Args:
-        node: that publishes.
-        topics: those of a recording.
-        overrides: topic -> profile to publish with.
+        node: the node that publishes.
+        topics: the topics of a recording.
+        overrides: topic -> the profile to publish with.
     """
     made: dict[str, Publisher[Any]] = {}
     for topic in topics:
@@ -42,7 +42,7 @@ def make_publishers(
 
 
 def untyped(bag: BagReader) -> list[Diagnostic]:
-    """The finding on topics that cannot be played, as the definition of their type is missing (BAG114)."""
+    """Return the diagnostic BAG114 for topics that cannot be played because the definition of their type is missing."""
     names = [f"{topic.name} ({topic.type_name})" for topic in bag.topics if not _is_known(topic.type_name)]
     if not names:
         return []
@@ -63,12 +63,13 @@ def _is_known(type_name: str) -> bool:
 
 
 class PublishedRecording:
-    """Publishes a recording, and its time on ``/clock``: the output of a playback that has a graph to itself.
+    """Publishes a recording, and its time on ``/clock``, for a playback that is alone in its graph.
 
     Args:
-        node: that publishes.
-        bag: the recording. Its own ``/clock`` is left out: time is that at which messages were received.
-        namespace: of a robot whose transforms are published as ``/tf`` and ``/tf_static``, too; nothing for none.
+        node: the node that publishes.
+        bag: the recording. Its own ``/clock`` is left out: time is the time at which messages were received.
+        namespace: the namespace of a robot whose transforms are also published as ``/tf`` and ``/tf_static``; empty for
+            none.
     """
 
     def __init__(self, node: Node, bag: BagReader, namespace: str = "") -> None:
@@ -88,12 +89,12 @@ class PublishedRecording:
         return frozenset(self._publishers)
 
     def wanted(self) -> frozenset[str]:
-        """The topics that have subscriptions."""
+        """Return the topics that have subscriptions."""
         publishers = [*self._publishers.items(), *self._doubles.items()]
         return frozenset(name for name, each in publishers if each.get_subscription_count())
 
     def publish_time(self, stamp_ns: int) -> None:
-        """Publish on ``/clock``."""
+        """Publish a time on ``/clock``."""
         self._clock.publish(self._clock.msg_type(clock=Time.from_nanoseconds(stamp_ns)))
 
     def publish(self, topic: str, stamp_ns: int, data: bytes) -> None:

@@ -1,6 +1,6 @@
-"""Quality of service in recordings: storing it, and deriving it for recording and playing.
+"""Quality of service in recordings: store it, and derive the profiles for recording and playing.
 
-The rules by which profiles are derived are those of rosbag2 (``rosbag2_transport/qos.cpp``).
+The rules for deriving profiles are those of rosbag2 (``rosbag2_transport/qos.cpp``).
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _DURATIONS = ("deadline", "lifespan", "liveliness_lease_duration")
 
 
 def to_bag(qos: QoSProfile) -> Qos:
-    """Convert a profile to that of the library."""
+    """Convert a profile to the library's type."""
     from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
 
     def time(duration: Duration) -> QosTime:
@@ -58,7 +58,7 @@ def to_bag(qos: QoSProfile) -> Qos:
 
 
 def from_bag(qos: Qos) -> QoSProfile:
-    """Convert a profile of a recording."""
+    """Convert a recorded profile from the library's type."""
 
     def policy(kind: Any, value: Any) -> Any:
         return kind.__members__.get(value.name, kind.SYSTEM_DEFAULT)
@@ -82,23 +82,23 @@ def from_bag(qos: Qos) -> QoSProfile:
 
 
 def to_text(profiles: Sequence[QoSProfile]) -> str:
-    """The text that ``metadata.yaml`` has for profiles, up to its version 8."""
+    """Return profiles as text for ``metadata.yaml`` up to version 8."""
     from rosbags.rosbag2.metadata import dump_qos_v8
 
     return dump_qos_v8([to_bag(profile) for profile in profiles])
 
 
 def from_text(text: Any) -> list[QoSProfile]:
-    """The profiles that ``metadata.yaml`` has, as text or, since its version 9, as a list."""
+    """Parse the profiles in a ``metadata.yaml``: text or, from version 9 on, a list."""
     from rosbags.rosbag2.metadata import parse_qos
 
     return [from_bag(profile) for profile in parse_qos(text)]
 
 
 def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
-    """The profile to subscribe with, so that every publisher of a topic is compatible.
+    """Return a profile to subscribe with that is compatible with every publisher of a topic.
 
-    Reliable and transient local are asked for where all publishers offer them.
+    It requests reliable and transient local if all publishers offer them.
 
     Args:
         offered: the profiles of the publishers.
@@ -113,10 +113,10 @@ def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
 
 
 def profile_for_playing(recorded: Sequence[QoSProfile]) -> QoSProfile:
-    """The profile to publish with: the recorded one where all publishers offered the same, else the default.
+    """Return the profile to publish with: the recorded one if all publishers offered the same, otherwise the default.
 
-    How much each of them kept, and how long that was worth something, may differ; then the longest history counts, as
-    one publisher now speaks for all. rosbag2 keeps 10 messages, whatever was recorded.
+    The publishers may have differed in depth and lifespan; then the longest history counts, because one publisher now
+    represents all of them. rosbag2 keeps 10 messages regardless of the recording.
     """
     if recorded and len({_offered(qos) for qos in recorded}) == 1:
         return max(recorded, key=lambda qos: (qos.history is HistoryPolicy.KEEP_ALL, qos.depth))
@@ -124,20 +124,20 @@ def profile_for_playing(recorded: Sequence[QoSProfile]) -> QoSProfile:
 
 
 def _offered(qos: QoSProfile) -> tuple[object, ...]:
-    """The part of a profile that decides which subscriptions are compatible."""
+    """Return the part of a profile that determines which subscriptions are compatible."""
     times = (qos.deadline.nanoseconds, qos.liveliness_lease_duration.nanoseconds)
     return (qos.reliability, qos.durability, qos.liveliness, *times)
 
 
 def overrides_of(document: object, source: str) -> dict[str, QoSProfile]:
-    """The profiles of a ``--qos-profile-overrides-path`` file: topic -> policies by name.
+    """Return the profiles in a ``--qos-profile-overrides-path`` file, by topic.
 
     Args:
-        document: the parsed YAML file.
+        document: the parsed YAML file: topic -> policies by name.
         source: the file's name, for errors.
 
     Raises:
-        LinkwrightError: BAG106, it has not that form.
+        LinkwrightError: BAG106, it does not have that form.
     """
     if not isinstance(document, Mapping) or not all(isinstance(item, Mapping) for item in document.values()):
         raise _wrong(

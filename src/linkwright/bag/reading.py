@@ -1,4 +1,4 @@
-"""Reading a recording: its topics, and its messages in the order of their times."""
+"""Read a recording: its topics, and its messages in the order of their times."""
 
 from __future__ import annotations
 
@@ -44,11 +44,11 @@ class BagTopic:
     """A topic of a recording.
 
     Attributes:
-        name: absolute.
-        type_name: such as ``std_msgs/msg/String``.
-        count: how many messages of it there are.
+        name: its absolute name.
+        type_name: its type, such as ``std_msgs/msg/String``.
+        count: the number of its messages.
         serialization_format: ``cdr``.
-        offered_qos: the profiles of the publishers that were recorded; none where that was not kept.
+        offered_qos: the recorded profiles of the publishers; empty if they were not recorded.
     """
 
     name: str
@@ -61,17 +61,19 @@ class BagTopic:
 class BagReader:
     """An open recording; close it, or use it in a ``with`` statement.
 
-    Types of messages that are not known otherwise are, from then on, by the definitions that it carries.
+    Message types that are not known otherwise become known from the definitions in the recording.
 
     Args:
         path: a folder with a ``metadata.yaml``, or a single ``.mcap`` or ``.db3`` file. Of a recording that was killed,
-            which has neither ``metadata.yaml`` nor an index, everything is read that was written. A folder may
-            also have nothing but the files of one recording, which are numbered then.
+            and
+            so has neither ``metadata.yaml`` nor an index, everything that was written is read. A folder may also
+            contain
+            only the numbered files of one recording.
         called: its name in messages; by default its path.
-        parts: the files of the recording, whatever they are called, where several are to be read as one.
+        parts: the files of the recording, with any names, if several are to be read as one.
 
     Raises:
-        LinkwrightError: BAG101 there is nothing there, BAG102 it is not a recording or a damaged one, BAG107 `rosbags`
+        LinkwrightError: BAG101, the path does not exist; BAG102, it is not a recording or is damaged; BAG107, `rosbags`
             is not installed.
     """
 
@@ -144,7 +146,8 @@ class BagReader:
         return reader
 
     def _finished(self, target: Path) -> Any:
-        """The target for the library, or its file with missing parts added and refused ones removed."""
+        """Return the target for the library: the path, or its file with missing parts added and refused parts removed.
+        """
         if target.is_file() and target.suffix == PACKED:
             from linkwright.bag.packed import unpacked
 
@@ -166,10 +169,11 @@ class BagReader:
 
     @property
     def findings(self) -> list[Diagnostic]:
-        """The findings on it.
+        """The diagnostics of the recording.
 
-        That it has no end (BAG109), as it was killed or cut off in a copy; topics that are not ROS 2's (BAG112); that
-        it holds no messages (BAG113).
+        They report that it has no end because it was killed or truncated in a copy (BAG109), topics that are not ROS
+        2's
+        (BAG112), and that it has no messages (BAG113).
         """
         found = []
         if not self._is_cut_off and not any(topic.count for topic in self.topics):
@@ -196,24 +200,24 @@ class BagReader:
 
     @property
     def files(self) -> list[Path]:
-        """The files with the messages."""
+        """The files that contain the messages."""
         if self._targets[0].is_file():
             return self._targets
         return _files_in(self.path)
 
     @property
     def compression(self) -> str:
-        """The compression besides that of chunks: ``file``, ``message``, or nothing."""
+        """The compression other than that of chunks: ``file``, ``message``, or empty."""
         return "file" if self._targets[0].suffix == PACKED else str(self._reader.compression_mode or "")
 
     @property
     def start_ns(self) -> int:
-        """When the first message was received, nanoseconds since the epoch; 0 where there is none."""
+        """When the first message was received, in nanoseconds since the epoch; 0 if there is none."""
         return self._reader.start_time if self._reader.message_count else 0
 
     @property
     def end_ns(self) -> int:
-        """When the last message was received, nanoseconds since the epoch; 0 where there is none."""
+        """When the last message was received, in nanoseconds since the epoch; 0 if there is none."""
         return self._reader.end_time - 1 if self._reader.message_count else 0
 
     @property
@@ -230,12 +234,12 @@ class BagReader:
     def messages(
         self, topics: Collection[str] = (), start_ns: int | None = None, stop_ns: int | None = None
     ) -> Iterator[Recorded]:
-        """The messages in the order of their times: topic, nanoseconds since the epoch, CDR bytes.
+        """Yield the messages in the order of their times: topic, nanoseconds since the epoch, CDR bytes.
 
         Args:
-            topics: only these; all when empty.
-            start_ns: nothing from before this time.
-            stop_ns: nothing from this time on.
+            topics: the topics to read; all if empty.
+            start_ns: the first time to read.
+            stop_ns: the time at which to stop; messages from this time on are not read.
 
         Raises:
             LinkwrightError: BAG102, the rest cannot be read; BAG103, a topic is not in the recording.
@@ -259,7 +263,7 @@ class BagReader:
         return self._read(self._reader.messages(connections, start_ns, stop_ns))
 
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
-        """The state at a time: the last message of each topic, and transforms; see `Moments`.
+        """Return the state at a time: the last message of each topic, and transforms; see `Moments`.
 
         Raises:
             LinkwrightError: BAG102, the messages cannot be read.
@@ -267,7 +271,8 @@ class BagReader:
         return self._look(lambda: self._moments.state_at(topics, at_ns))
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
-        """When the last message before a time was received, nanoseconds since the epoch; None where there is none.
+        """Return when the last message before a time was received, in nanoseconds since the epoch; None if there is
+        none.
 
         Raises:
             LinkwrightError: BAG102, the messages cannot be read.
@@ -275,7 +280,9 @@ class BagReader:
         return self._look(lambda: self._moments.time_before(topics, at_ns))
 
     def counts(self, parts: int) -> dict[str, list[int]]:
-        """The numbers of messages of each topic in equal parts of the recording; empty for a file without an index."""
+        """Return the number of messages of each topic in equal parts of the recording; empty for a file without an
+        index.
+        """
         return self._moments.counts(parts) if self._reader.message_count else {}
 
     def _look(self, what: Callable[[], T]) -> T:
@@ -311,7 +318,7 @@ def open_recording(path: str | Path) -> BagReader:
     """Open a recording of topics, in MCAP or SQLite, to read its messages.
 
     Args:
-        path: see `BagReader`; close the reader, or use it in a ``with`` statement.
+        path: see `BagReader`. Close the returned reader, or use it in a ``with`` statement.
 
     Raises:
         LinkwrightError: see `BagReader`.
@@ -320,9 +327,10 @@ def open_recording(path: str | Path) -> BagReader:
 
 
 def _ignore_profiles_of_files(storage: Any) -> None:
-    """Let the library find the topics of ``metadata.yaml`` in files with other profiles; it requires equal ones.
+    """Let the library match topics of ``metadata.yaml`` with topics in files even if their profiles differ.
 
-    Otherwise recordings from before rosbag2 kept profiles in files, and some converted ones, are read without messages.
+    Otherwise recordings made before rosbag2 stored profiles in files, and some converted ones, are read without
+    messages.
     """
     listed = {(connection.topic, connection.msgtype): connection for connection in storage.connections}
     for file in storage.storages:
@@ -332,7 +340,7 @@ def _ignore_profiles_of_files(storage: Any) -> None:
 
 
 def _storage_targets(path: Path, called: str) -> list[Path]:
-    """The paths for the library: the folder, or its files where the metadata are missing."""
+    """Return the paths for the library: the folder, or its files if the metadata are missing."""
     if not path.exists():
         raise LinkwrightError(Diagnostic("BAG101", phrase("there is no recording '{path}'", path=called)))
     if path.is_file() or ((path / METADATA).exists() and not _lacks_ends(path)):
@@ -362,7 +370,7 @@ def _storage_targets(path: Path, called: str) -> list[Path]:
 
 
 def _lacks_ends(folder: Path) -> bool:
-    """Return whether a recording of several files, which the library reads by its metadata, has one without its end."""
+    """Return whether a recording with metadata has several files, one of which is unfinished."""
     files = sorted(folder.glob("*.mcap"))
     return len(files) > 1 and are_of_one_recording(files) and any(is_unfinished(file) for file in files)
 

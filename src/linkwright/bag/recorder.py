@@ -1,4 +1,4 @@
-"""Recording: subscribes to topics as they appear and writes their messages."""
+"""Record: subscribe to topics as they appear and write their messages."""
 
 from __future__ import annotations
 
@@ -20,19 +20,21 @@ _POLL_SECONDS = 0.1
 class Recorder:
     """Writes the messages of topics into a recording until it is closed.
 
-    Flushes the received messages to the operating system every second, so that a killed process loses little.
+    It flushes the received messages to the operating system every second, so that little is lost if the process is
+    killed.
 
     Args:
         node: the node that subscribes; its log reports events.
         selection: the topics to record.
-        writer: the destination of the messages; it is closed together with the recorder.
+        writer: the destination of the messages; closing the recorder closes it too.
         overrides: topic -> the profile to subscribe with, instead of one that suits the publishers.
         discover: whether topics that appear later are recorded too.
         polling_seconds: the interval between two searches for new topics.
-        without_publishers: whether topics that have subscriptions only are recorded too.
+        without_publishers: whether topics that have only subscriptions are recorded too.
         without_subscriptions: whether topics without a subscription are recorded too.
-        paused: whether messages are dropped until `toggle_paused`.
-        guarded: wraps the node's callbacks, so that the caller can stop when the disk is full; else the node logs it.
+        paused: whether messages are dropped until `toggle_paused` is called.
+        guarded: wraps the node's callbacks, so that the caller can stop when the disk is full; by default the node logs
+            it.
     """
 
     def __init__(
@@ -68,11 +70,11 @@ class Recorder:
 
     @property
     def message_count(self) -> int:
-        """How many messages were written."""
+        """The number of messages written."""
         return self._count
 
     def toggle_paused(self) -> None:
-        """Pause, or resume."""
+        """Pause or resume recording."""
         self.paused = not self.paused
         self._logger.info("Pausing recording." if self.paused else "Resuming recording.")
 
@@ -89,7 +91,7 @@ class Recorder:
 
     def _look(self) -> None:
         if self._by_clock and self._looking is not None and self._now() == 0:
-            return  # no clock has published yet; subscribing later keeps latched messages
+            return  # no clock has been published yet; subscribing later keeps latched messages
         for name, types in self._node.get_topic_names_and_types():
             if name in self._writer.topics or name in self._refused:
                 continue
@@ -133,7 +135,7 @@ class Recorder:
             return
         stamp = self._now() if self._by_clock else info.received_timestamp
         if self._by_clock and stamp == 0:
-            return  # no clock has published yet
+            return  # no clock has been published yet
         self._writer.write(name, stamp, data)
         self._count += 1
 

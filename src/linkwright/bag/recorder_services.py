@@ -1,4 +1,4 @@
-"""The services that control a recorder, those of rosbag2: ``/rosbag2_recorder/snapshot`` and so on."""
+"""The services that control a recorder, as in rosbag2: ``/rosbag2_recorder/snapshot`` and so on."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ class RecorderServices:
 
     Args:
         node: the node.
-        recorder: the recorder that they control.
-        writer: where it writes.
-        snapshots: whether there is a service that takes them.
+        recorder: the recorder that the services control.
+        writer: the writer of the recorder.
+        snapshots: whether to offer the service that takes snapshots.
     """
 
     def __init__(self, node: Node, recorder: Recorder, writer: BagWriter, *, snapshots: bool) -> None:

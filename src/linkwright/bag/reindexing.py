@@ -1,4 +1,4 @@
-"""Recreates the ``metadata.yaml`` of a recording from its files, as ``ros2 bag reindex`` does."""
+"""Recreate the ``metadata.yaml`` of a recording from its files, as ``ros2 bag reindex`` does."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def reindex(folder: Path) -> None:
         folder: the folder with the files of one recording, whose names end with _0, _1 and so on.
 
     Raises:
-        LinkwrightError: BAG117, the folder has no such files; BAG105, the disk refuses; those of `BagReader`.
+        LinkwrightError: BAG117, the folder has no such files; BAG105, the disk refuses; see also `BagReader`.
     """
     from linkwright.bag.parts import write_metadata
 

@@ -1,7 +1,7 @@
-"""Rewrites recordings with other files, topics or compression, as ``ros2 bag convert`` does.
+"""Rewrite recordings with other files, topics or compression, as ``ros2 bag convert`` does.
 
-The keys of its YAML file are those of rosbag2's ``StorageOptions`` and ``RecordOptions``; those that only tune the
-writing of rosbag2 change nothing here.
+The keys of its YAML file are those of rosbag2's ``StorageOptions`` and ``RecordOptions``; keys that only tune how
+rosbag2 writes are ignored.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def rewrite(sources: Sequence[str | Path], options_file: str | Path) -> list[Pat
         The paths of the new recordings.
 
     Raises:
-        LinkwrightError: BAG115, the options cannot be read; those of `BagReader` and `BagWriter`.
+        LinkwrightError: BAG115, the options cannot be read; see also `BagReader` and `BagWriter`.
     """
     outputs = [_Output(entry, str(options_file)) for entry in _entries(options_file)]
     with ExitStack() as stack:
@@ -47,10 +47,10 @@ def rewrite(sources: Sequence[str | Path], options_file: str | Path) -> list[Pat
 
 
 class _Output:
-    """A recording to be made, by its entry in the file of options.
+    """A recording to write, from its entry in the file of options.
 
     Attributes:
-        begin_ns, end_ns: messages from outside of these times are left out.
+        begin_ns, end_ns: messages outside these times are left out.
     """
 
     def __init__(self, entry: Mapping[str, Any], file: str) -> None:
@@ -84,7 +84,7 @@ class _Output:
         )
 
     def opened(self, bags: Sequence[BagReader]) -> BagWriter:
-        """The recording with its topics; one that has several types in the others is left out, as in rosbag2."""
+        """Open the recording with its topics; a topic with several types in the sources is left out, as in rosbag2."""
         writer = BagWriter(
             str(self._entry["uri"]),
             self._storage,

@@ -1,4 +1,4 @@
-"""Saving messages that are in memory as a recording."""
+"""Save messages in memory as a recording."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class SavedTopic:
     """The type and quality of service of a topic in memory.
 
     Attributes:
-        type_name: such as ``std_msgs/msg/String``.
+        type_name: the type, such as ``std_msgs/msg/String``.
         offered: the profiles of its publishers.
     """
 
@@ -37,10 +37,10 @@ def save_messages(
     """Write messages into a new recording.
 
     Args:
-        path: the folder to make.
-        topics: all that messages are of.
-        messages: in the order of their times, packed or not.
-        on_progress: called now and then with the written fraction, 0 to 1.
+        path: the folder to create.
+        topics: the topics of all messages.
+        messages: the messages in the order of their times, compressed or not.
+        on_progress: called from time to time with the written fraction, 0 to 1.
 
     Raises:
         LinkwrightError: BAG105, BAG107, BAG108; see `BagWriter`.
@@ -55,7 +55,7 @@ def save_messages(
 
 
 def last_reset_ns(messages: Sequence[Recorded]) -> int | None:
-    """The last time at which ``/clock`` went back; None if it never did."""
+    """Return the last time at which ``/clock`` went back; None if it never did."""
     found, now = None, None
     for name, stamp_ns, data in messages:
         if name == CLOCK_TOPIC:
@@ -67,9 +67,9 @@ def last_reset_ns(messages: Sequence[Recorded]) -> int | None:
 
 
 def in_simulated_time(messages: Sequence[Recorded]) -> list[Recorded]:
-    """Return the messages with the current times of ``/clock`` in place of the system's times.
+    """Return the messages with the system's times replaced by the simulated times of ``/clock``.
 
-    Messages before the first one of ``/clock`` get its time; without ``/clock``, all stay as they are.
+    Messages before the first one of ``/clock`` get its time; without ``/clock``, all keep their times.
     """
     now = next((_clock_ns(data) for name, _, data in messages if name == CLOCK_TOPIC), None)
     if now is None:

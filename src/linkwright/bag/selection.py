@@ -1,4 +1,4 @@
-"""Selecting the topics to be recorded."""
+"""Select the topics to record."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX
 
 @dataclass(frozen=True)
 class TopicSelection:
-    """The options of ``bag record`` on topics.
+    """The options of ``bag record`` that select topics.
 
     Attributes:
-        everything: every topic that is not hidden.
-        names: these topics, absolute names.
-        types: every topic of one of these types.
-        pattern: a regular expression; every topic and service whose name contains a match.
-        without_names: none of these, whatever the other options select.
-        without_types: none of these types.
-        without_pattern: a regular expression; no topic whose name contains a match.
-        hidden: treat hidden topics, whose names begin with an underscore, as others.
-        every_service: the events of every service that publishes its requests (introspection).
-        services: the events of these services, absolute names.
-        without_services: none of these services.
+        everything: whether to select every topic that is not hidden.
+        names: topics to select, absolute names.
+        types: types whose topics to select.
+        pattern: a regular expression; selects every topic and service whose name contains a match.
+        without_names: topics to exclude, whatever the other options select.
+        without_types: types whose topics to exclude.
+        without_pattern: a regular expression; excludes topics whose names contain a match.
+        hidden: whether to treat hidden topics, whose names begin with an underscore, like others.
+        every_service: whether to select the events of every service that publishes its requests (introspection).
+        services: services whose events to select, absolute names.
+        without_services: services to exclude.
 
     Raises:
         LinkwrightError: BAG104, a regular expression is not valid.
@@ -51,12 +51,12 @@ class TopicSelection:
 
     @property
     def is_empty(self) -> bool:
-        """Whether it selects nothing at all."""
+        """Whether nothing is selected."""
         return not (self._accepts_unnamed or self.names or self.services)
 
     @property
     def is_complete_with(self) -> frozenset[str] | None:
-        """The topics after which discovery may stop; None where new ones may always match."""
+        """The topics after whose discovery the search may stop; None if new topics may always match."""
         return None if self._accepts_unnamed else self.named
 
     @property
@@ -69,11 +69,11 @@ class TopicSelection:
         return bool(self.everything or self.every_service or self.types or self.pattern)
 
     def takes(self, name: str, type_name: str) -> bool:
-        """Return whether a topic is recorded.
+        """Return whether a topic is selected.
 
         Args:
             name: its absolute name.
-            type_name: such as ``std_msgs/msg/String``.
+            type_name: its type, such as ``std_msgs/msg/String``.
         """
         if name in self.without_names or type_name in self.without_types or self._is_unwanted(name):
             return False

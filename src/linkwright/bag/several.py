@@ -1,4 +1,4 @@
-"""Reading the files of a recording without ``metadata.yaml`` as one, in the order of their times."""
+"""Read the files of a recording without ``metadata.yaml`` as one recording, in the order of their times."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ class SeveralReader(Reader):
 
 
 class _Storages:
-    """The storage interface of the library over several files.
+    """The library's storage interface for several files.
 
     Attributes:
-        storages: of the single files.
-        connections: one for each topic and type.
-        metadata: of all files together.
+        storages: the storages of the files.
+        connections: one connection for each topic and type.
+        metadata: the metadata of all files combined.
     """
 
     def __init__(self, readers: Sequence[Reader]) -> None:
@@ -62,15 +62,15 @@ class _Storages:
         )
 
     def open(self) -> None:
-        """Do nothing: the files are open."""
+        """Do nothing, because the files are already open."""
 
     def close(self) -> None:
-        """Do nothing: the caller that opened the files closes them."""
+        """Do nothing, because the caller that opened the files closes them."""
 
     def messages(
         self, connections: Collection[Connection], start: int | None = None, stop: int | None = None
     ) -> Generator[_Message, None, None]:
-        """The messages of all files by their times; a file is opened when its time has come."""
+        """Yield the messages of all files in the order of their times; each file is read once its time is reached."""
         wanted = {_key(connection): connection for connection in connections}
         waiting = [
             reader for reader in self._readers if reader.message_count and (start is None or reader.end_time > start)

@@ -6,10 +6,10 @@ from collections import deque
 
 
 class LatestMessages:
-    """The last messages in a number of bytes; older ones are dropped.
+    """The most recent messages, up to a number of bytes; older messages are dropped.
 
     Args:
-        size: bytes of messages. A message that is longer is not kept.
+        size: the maximum number of bytes. A message that is longer is not kept.
     """
 
     def __init__(self, size: int) -> None:
@@ -18,7 +18,7 @@ class LatestMessages:
         self._kept: deque[tuple[str, int, bytes]] = deque()
 
     def add(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
-        """Store a message, with the arguments of `BagWriter.write`."""
+        """Store a message; the arguments are those of `BagWriter.write`."""
         content = bytes(data)
         if len(content) > self._room:
             return
@@ -29,7 +29,7 @@ class LatestMessages:
             self._used -= len(dropped)
 
     def taken(self) -> list[tuple[str, int, bytes]]:
-        """The messages from the oldest on, which are not kept any more."""
+        """Remove and return the messages, oldest first."""
         taken = list(self._kept)
         self._kept.clear()
         self._used = 0

@@ -1,4 +1,4 @@
-"""The content of messages without their stamps, to detect a stream that only repeats itself."""
+"""Extract the content of messages without their stamps, to detect a stream that only repeats itself."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ class Content(NamedTuple):
     """The content of a message without its stamps.
 
     Attributes:
-        what: its subject: the frames of transforms, since many nodes publish on their topic; else empty.
-        state: the serialized values without stamps, and of transforms without poses.
+        what: its subject: the frames of transforms, because many nodes publish on their topic; otherwise empty.
+        state: the serialized values without stamps, and for transforms also without poses.
         poses: the numbers of the poses, float64: positions in m and quaternions.
-        clock_ns: the simulated time in a message of a clock; None for any other message.
+        clock_ns: the simulated time in a clock message; None for any other message.
     """
 
     what: str
@@ -45,13 +45,13 @@ class Content(NamedTuple):
             return False
         if self.poses == newer.poses:
             return True
-        with np.errstate(invalid="ignore"):  # infinite numbers must be equal bit by bit
+        with np.errstate(invalid="ignore"):  # infinite numbers must be equal bit for bit
             moved = np.abs(np.frombuffer(self.poses) - np.frombuffer(newer.poses))
         return bool((moved <= _SAME_PLACE).all())
 
 
 def content_of(type_name: str, data: bytes) -> Content | None:
-    """The content of a message of a type that begins with a header, of transforms or a clock; None of any other.
+    """Return the content of a message that has a header, or of transforms or a clock; None for any other message.
 
     Messages without a stamp report events: two equal ones do not mean that nothing happened.
     """
@@ -65,7 +65,13 @@ def content_of(type_name: str, data: bytes) -> Content | None:
 
 
 def clock_between(earlier: bytes, later: bytes, share: float) -> bytes:
-    """A message of a clock between two others, whose times passed evenly: after a share of the way, 0 to 1."""
+    """Return a clock message between two others, assuming that time passed evenly.
+
+    Args:
+        earlier: the first message.
+        later: the second message.
+        share: the position between them, 0 to 1.
+    """
     (first, last) = (content.clock_ns or 0 for content in map(_content_of_clock, (earlier, later)) if content)
     return earlier[:_CAPSULE] + _TIME.pack(*divmod(first + round(share * (last - first)), NANOSECONDS_PER_SECOND))
 
@@ -90,9 +96,9 @@ class _Layout(NamedTuple):
 
     Attributes:
         what: the frames.
-        state: the bytes behind the encoding, without stamps and poses.
-        numbers: the places of the poses' bytes.
-        blank: those of stamps and poses.
+        state: the bytes after the encoding header, without stamps and poses.
+        numbers: the offsets of the poses' bytes.
+        blank: the offsets of the bytes of stamps and poses.
     """
 
     what: str
@@ -107,7 +113,7 @@ _layouts: dict[int, _Layout] = {}
 
 
 def _content_of_transforms(data: bytes) -> Content | None:
-    """The frames and their poses; None where the bytes are big-endian or end too early."""
+    """Return the frames and their poses; None if the bytes are big-endian or truncated."""
     if len(data) < 2 * _CAPSULE or data[1] != _LITTLE:
         return None
     layout = _layouts.get(len(data))

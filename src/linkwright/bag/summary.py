@@ -1,4 +1,4 @@
-"""The summary of ``bag info``."""
+"""The summary that ``bag info`` prints."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 def summary_text(bag: BagReader, *, topic_names_only: bool = False) -> str:
-    """Files, times and topics of a recording, in the layout of ``ros2 bag info``.
+    """Return the files, times and topics of a recording as text, in the layout of ``ros2 bag info``.
 
     Args:
         bag: the recording.
-        topic_names_only: only the names, one a line.
+        topic_names_only: whether to list only the names, one per line.
     """
     if topic_names_only:
         return "".join(f"{topic.name}\n" for topic in bag.topics)
@@ -27,9 +27,9 @@ def layout(files: Sequence[str], size: int, storage: str, span_ns: tuple[int, in
 
     Args:
         files: the names of its files.
-        size: the bytes of all files.
+        size: the total size of its files in bytes.
         storage: one of `linkwright.bag.STORAGES`.
-        span_ns: the times of the first and the last message, nanoseconds since the epoch.
+        span_ns: the times of the first and the last message, in nanoseconds since the epoch.
         topics: the topics with their types and message counts.
     """
     start, end = span_ns

@@ -1,8 +1,9 @@
-"""MCAP files without an end or an index: of a recorder that was killed, cut off in a copy, or streamed.
+"""Read MCAP files without an end or an index: of a recorder that was killed, truncated in a copy, or streamed.
 
-A file is a sequence of records, each with its kind and length (the MCAP specification). All complete records are good.
-The missing summary, which lists the chunks, is made in memory; readers see it after the file's own bytes. So nothing is
-copied, and such a file is as fast to seek in as others. Records that do not belong to ROS 2 are hidden the same way.
+A file is a sequence of records, each with its kind and length (the MCAP specification). All complete records are
+usable. The missing summary, which lists the chunks, is created in memory; readers see it after the file's own bytes. So
+nothing is copied, and seeking in such a file is as fast as in others. Records that do not belong to ROS 2 are hidden in
+the same way.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ _COUNTS = struct.Struct("<QHIIIIQQ")
 
 
 def is_unfinished(path: Path) -> bool:
-    """Return whether an MCAP file begins as one but does not end as one."""
+    """Return whether a file begins like an MCAP file but does not end like one."""
     with path.open("rb") as file:
         if file.read(len(MAGIC)) != MAGIC:
             return False
@@ -58,7 +59,7 @@ def has_index(path: Path) -> bool:
 
 
 def made_readable(path: Path) -> ReadableFile | None:
-    """The file in a form that the library can read; None if it can read it as it is."""
+    """Return a file in a form that the library can read; None if the library can read the file itself."""
     if not is_unfinished(path) and has_index(path):
         patches = patches_of(path)
         return ReadableFile(path, path.stat().st_size, b"", patches) if patches else None
@@ -69,16 +70,16 @@ def made_readable(path: Path) -> ReadableFile | None:
 
 
 class ReadableFile:
-    """The whole records of an MCAP file, with a summary; for the library, in place of a path.
+    """The complete records of an MCAP file, with a summary; the library uses it in place of a path.
 
     Args:
         path: the file, which is only read.
-        size: how many bytes of it are seen.
+        size: the number of bytes of the file that are visible.
         tail: the bytes that follow them.
         patches: replaced bytes: offset -> bytes.
 
     Attributes:
-        name: of the file.
+        name: the name of the file.
         suffix: ``.mcap``.
     """
 
@@ -96,11 +97,11 @@ class ReadableFile:
         return self._path.exists()
 
     def is_dir(self) -> bool:
-        """False: it is a file."""
+        """Return False, because it is a file."""
         return False
 
     def open(self, mode: str = "rb") -> BinaryIO:
-        """The bytes of the file and of the summary."""
+        """Open a stream of the bytes of the file and of the summary."""
         assert mode == "rb"
         return cast("BinaryIO", io.BufferedReader(_Patched(self._path, self._size, self._tail, self._patches), 1 << 16))
 
@@ -149,7 +150,7 @@ class _Patched(io.RawIOBase):
 
 @dataclass(slots=True)
 class _Chunk:
-    """A chunk: its position in the file, its record, and the positions of the channels' indexes."""
+    """A chunk: its position in the file, its record, and the positions of its message indexes by channel."""
 
     offset: int
     length: int
@@ -165,7 +166,7 @@ class _Chunk:
 
 @dataclass(slots=True)
 class _Scan:
-    """The content of a file."""
+    """The records found in a file."""
 
     end: int = len(MAGIC)
     chunks: list[_Chunk] = field(default_factory=list)
@@ -182,9 +183,9 @@ class _Scan:
 
 
 def _summary_of(scan: _Scan, file: BinaryIO) -> bytes:
-    """The bytes that have to follow the whole records of a file."""
+    """Return the bytes that must follow the complete records of a file."""
     if scan.has_loose_messages or not scan.chunks:
-        # The library reads such a file from one end to the other, with or without a summary.
+        # The library reads such a file sequentially, with or without a summary.
         return _record(_DATA_END, bytes(4)) + _record(_FOOTER, bytes(FOOTER_BODY.size)) + MAGIC
     made = bytearray()
     for chunk in scan.chunks:
@@ -194,7 +195,7 @@ def _summary_of(scan: _Scan, file: BinaryIO) -> bytes:
 
 
 def _scan(file: BinaryIO, size: int) -> _Scan:
-    """Scan the records; the content of chunks is skipped."""
+    """Scan the records of a file without reading the content of chunks."""
     scan = _Scan()
     while True:
         file.seek(scan.end)
@@ -230,7 +231,7 @@ def _chunk(file: BinaryIO, offset: int, length: int) -> _Chunk:
 
 
 def _look_into(file: BinaryIO, chunk: _Chunk, scan: _Scan, made: bytearray) -> None:
-    """Read the schemas and channels in a chunk, and index its messages, where the file lacks that."""
+    """Read the schemas and channels in a chunk, and index its messages if the file lacks the index."""
     from rosbags.rosbag2.storage_mcap import decompress
 
     file.seek(chunk.offset + chunk.length - chunk.compressed_size)
@@ -253,7 +254,7 @@ def _look_into(file: BinaryIO, chunk: _Chunk, scan: _Scan, made: bytearray) -> N
 
 
 def _records(data: bytes) -> Iterator[tuple[int, int, int]]:
-    """The records of an uncompressed chunk: kind, position, length of the content."""
+    """Yield the records of an uncompressed chunk: kind, position, length of the content."""
     place = 0
     while place + HEAD.size <= len(data):
         kind, length = HEAD.unpack_from(data, place)
@@ -262,7 +263,7 @@ def _records(data: bytes) -> Iterator[tuple[int, int, int]]:
 
 
 def _tail(scan: _Scan, made: bytes) -> bytes:
-    """The missing indexes, the end of the data, and the summary."""
+    """Return the missing indexes, the end of the data, and the summary."""
     before = made + _record(_DATA_END, bytes(4))
     chunks = [chunk for chunk in scan.chunks if chunk.indexes]
     totals: dict[int, int] = defaultdict(int)

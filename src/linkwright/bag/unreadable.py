@@ -1,4 +1,4 @@
-"""Diagnosing files that cannot be read as recordings, by their first bytes."""
+"""Diagnose files that cannot be read as recordings, by their first bytes."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def _by_its_beginning(path: Path, head: bytes) -> Verdict | None:
 
 
 def _missing_files(folder: Path) -> list[str]:
-    """Return the names of the files that a recording's metadata lists and that do not exist."""
+    """Return the names of files that a recording's metadata lists but that do not exist."""
     try:
         metadata = yaml.safe_load((folder / METADATA).read_text(encoding="utf-8"))
         paths = metadata["rosbag2_bagfile_information"]["relative_file_paths"]

@@ -1,4 +1,4 @@
-"""Writing a recording."""
+"""Write recordings of topics."""
 
 from __future__ import annotations
 
@@ -44,22 +44,23 @@ _LONGEST_WRITE = 30.0
 class BagWriter:
     """A recording that is being written; close it, or use it in a ``with`` statement.
 
-    The recording is finished when a signal other than SIGKILL ends the process (`unfinished`). Files are named and
-    divided as rosbag2's ``SequentialWriter`` does.
+    The recording is finished even if a signal other than SIGKILL ends the process (`unfinished`). Files are named and
+    split
+    as by rosbag2's ``SequentialWriter``.
 
     Args:
-        path: the folder to make; of a single file, the file.
+        path: the folder to create; for a single file, the file.
         storage: one of `STORAGES`.
         compression: one of `COMPRESSIONS`.
-        single_file: whether to write only an MCAP file, which needs no metadata beside it; rosbag2 makes a folder.
+        single_file: whether to write only an MCAP file, which needs no separate metadata; rosbag2 creates a folder.
         max_size: bytes after which another file is begun; 0 for one file.
         max_seconds: seconds after which another file is begun; 0 for one file.
-        snapshot_size: where positive, only `take_snapshot` writes, and the last messages are kept in this many bytes.
+        snapshot_size: if positive, only `take_snapshot` writes, and the latest messages are kept in this many bytes.
         custom_data: additional entries of the metadata.
 
     Raises:
-        LinkwrightError: BAG105, the folder exists already or cannot be made; BAG107, `rosbags` is not installed;
-            BAG116, files are to be smaller than possible.
+        LinkwrightError: BAG105, the folder exists already or cannot be created; BAG107, `rosbags` is not installed;
+            BAG116, the requested file size is too small.
 
     Attributes:
         path: the given path.
@@ -107,13 +108,13 @@ class BagWriter:
 
     @property
     def size(self) -> int:
-        """Bytes of its files, as far as they are written."""
+        """The number of bytes written to its files so far."""
         if self._is_file:
             return self.path.stat().st_size
         return sum(path.stat().st_size for path in self.path.iterdir())
 
     def add_topic(self, name: str, type_name: str, offered_qos: Collection[QoSProfile] = ()) -> None:
-        """Add a topic, whose messages may follow.
+        """Add a topic, so that its messages can be written.
 
         Raises:
             LinkwrightError: MSG101, the type is not known; BAG108, the disk refuses.
@@ -129,17 +130,17 @@ class BagWriter:
             self._topics[name] = facts
 
     def write(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
-        """Add a message; with `snapshot_size`, keep it for a snapshot.
+        """Write a message; with `snapshot_size`, keep it for a snapshot.
 
         Args:
             topic: a topic that was added.
-            stamp_ns: when it was received, nanoseconds since the epoch.
-            data: CDR bytes with their header of four.
+            stamp_ns: when it was received, in nanoseconds since the epoch.
+            data: CDR bytes with their four-byte header.
 
         Raises:
-            LinkwrightError: BAG108, the disk refuses; the messages before can still be played.
+            LinkwrightError: BAG108, the disk refuses; the messages written before can still be played.
         """
-        if self._is_ending:  # the ending thread waits for the lock, which a constant writer might always get first
+        if self._is_ending:  # the ending thread waits for the lock, and a continuous writer might always get it first
             return
         with self._lock:
             if self._part is None:
@@ -153,7 +154,7 @@ class BagWriter:
                 raise self._ended(error) from error
 
     def take_snapshot(self) -> bool:
-        """Write the messages kept for a snapshot; return whether they are kept at all.
+        """Write the messages kept for a snapshot; return whether messages are kept for snapshots.
 
         Raises:
             LinkwrightError: BAG108, the disk refuses.
@@ -172,7 +173,7 @@ class BagWriter:
             return True
 
     def split(self) -> None:
-        """Continue in another file; a single file and a closed recording stay as they are.
+        """Start a new file; this does nothing for a single file or a closed recording.
 
         Raises:
             LinkwrightError: BAG108, the disk refuses.
@@ -184,7 +185,7 @@ class BagWriter:
                 raise self._ended(error) from error
 
     def flush(self) -> None:
-        """Flush, so that the written messages survive the end of this process, however it ends.
+        """Flush the written messages, so that they survive the end of this process, however it ends.
 
         Raises:
             LinkwrightError: BAG108, the disk refuses.
@@ -198,7 +199,9 @@ class BagWriter:
                 raise self._ended(error) from error
 
     def close(self) -> None:
-        """Write the index and the metadata. A second call, and one after the disk refused something, does nothing.
+        """Write the index and the metadata.
+
+        A second call does nothing, and neither does a call after the disk has refused to write.
 
         Raises:
             LinkwrightError: BAG108, the disk refuses.
@@ -218,12 +221,12 @@ class BagWriter:
             unfinished.unregister_finished(self)
 
     def finish(self) -> None:
-        """`close` from another thread than the one that writes, before the process is ended."""
+        """Close the recording from a thread other than the writing one, before the process ends."""
         self._is_ending = True
         if not self._lock.acquire(timeout=_LONGEST_WRITE):
             return
         try:
-            with contextlib.suppress(LinkwrightError):  # nothing remains that could report it
+            with contextlib.suppress(LinkwrightError):  # the process is ending, so an error can no longer be reported
                 self.close()
         finally:
             self._lock.release()
@@ -277,7 +280,7 @@ class BagWriter:
         """The error when the disk refuses something; nothing more is written then."""
         unfinished.unregister_finished(self)
         part, self._part = self._part, None
-        with contextlib.suppress(*_REFUSALS):  # the disk refuses its buffer again
+        with contextlib.suppress(*_REFUSALS):  # the disk refuses to write the buffer again
             if part is not None:
                 part.abort()
         reason = error.strerror if isinstance(error, OSError) else str(error)
