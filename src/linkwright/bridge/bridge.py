@@ -1,7 +1,7 @@
-"""A bridge between two networks: each shows the nodes of the other one, with their topics and services.
+"""A bridge between two networks, which shows the nodes of each in the other, with their topics and services.
 
-Two bridges between the same networks do not carry the same traffic: nodes of a bridge are known by their enclave, and
-traffic that both could carry is carried by the bridge whose id comes first (decision 0066).
+Two bridges between the same networks do not carry the same traffic: nodes of a bridge are recognised by their enclave,
+and traffic that both could carry is carried by the bridge whose id sorts first (decision 0066).
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ _OF_THE_BRIDGE = ("wire", "dds", "zenoh", "bridge")
 
 
 def new_bridge_id() -> str:
-    """An id that no other bridge has."""
+    """Return a new, unique bridge id."""
     return f"b{secrets.token_hex(4)}"
 
 
 async def run_bridge(
     networks: tuple[Network, Network], names: NameFilter, bridge_id: str, log: LogSink, ready: Callable[[], object]
 ) -> None:
-    """Carry the traffic that the names let through between two networks, both ways, until it is cancelled.
+    """Carry the traffic with permitted names between two networks, in both directions, until cancelled.
 
     Args:
         networks: the networks.
-        names: which topics and services are carried.
-        bridge_id: its own.
+        names: the topics and services to carry.
+        bridge_id: the id of the bridge.
         log: receives the log.
         ready: called once both networks are joined.
 
@@ -87,7 +87,8 @@ async def _carry(first: Side, second: Side, directions: tuple[Direction, Directi
             news.clear()
             first.update()
             second.update()
-            # A service that both sides serve is carried neither way, so that no request goes round in a circle.
+            # A service that both sides offer is not carried in either direction, so that no request travels in a
+            # circle.
             for direction in directions:
                 direction.withdraw()
             for direction in directions:
@@ -104,7 +105,8 @@ async def _carry(first: Side, second: Side, directions: tuple[Direction, Directi
 
 
 def _relevant(log: LogSink) -> LogSink:
-    """Drops the log of mirrored nodes, which warn of a quality of service that is not their own choice."""
+    """Return a sink that drops the log of mirrored nodes, which warn of a quality of service that they did not choose.
+    """
 
     def take(record: LogRecord) -> None:
         if record.node in _OF_THE_BRIDGE or record.level >= LogLevel.ERROR:

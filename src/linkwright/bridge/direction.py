@@ -1,4 +1,4 @@
-"""One direction of a bridge: publishers and services of the source network are mirrored in the target network."""
+"""One direction of a bridge: mirror publishers and services of the source network in the target network."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ class Early(NamedTuple):
     """A message whose publisher is not known yet.
 
     Attributes:
-        until: how long it is kept, by the steady clock.
+        until: when it is dropped, by the steady clock.
         tap: the tap that received it.
-        gid: its publisher's.
+        gid: the gid of its publisher.
         data: the message.
     """
 
@@ -49,14 +49,15 @@ class Early(NamedTuple):
 class Direction:
     """Carries messages, requests and responses from a source network to a target network.
 
-    A node at the source has one of its name at the target, with the publishers and the services that it has at home;
-    its subscriptions and clients are only shown there, see `Presence`. The bridge's own node subscribes at the source
-    to topics that have subscriptions at the target, and calls its services.
+    Each node in the source has a node with the same name in the target, with the same publishers and services. Its
+    subscriptions and clients are only announced there, see `Presence`. The bridge's own node subscribes in the source
+    to
+    topics that have subscriptions in the target, and calls the services of the source.
 
     Args:
         source: the network that the traffic comes from.
         target: the network that it is carried to.
-        names: which topics and services are carried.
+        names: the topics and services to carry.
         logger: notifies the user, once for each problem.
     """
 
@@ -87,7 +88,7 @@ class Direction:
     # --- after changes -----------------------------------------------------------------------------------------------
 
     def withdraw(self) -> None:
-        """Decide what is to be mirrored now, and remove mirrors of endpoints that have left."""
+        """Decide which endpoints to mirror now, and remove the mirrors of endpoints that have left."""
         self._decide()
         self._leaving = {
             gid: self._leaving.get(gid, 0) for gid in self._publishers.keys() - self._wanted_publishers.keys()
@@ -99,7 +100,7 @@ class Direction:
         self._remove_departed()
 
     def add(self) -> None:
-        """Mirror new nodes, publishers and services at the target."""
+        """Mirror new nodes, publishers and services in the target."""
         for name, node in self._wanted_nodes.items():
             if name not in self._nodes:
                 self._nodes[name] = self._target.open_node(node)
@@ -114,12 +115,13 @@ class Direction:
                 self._services[key] = MirroredService(self._node_of(info), self._source.own, info)
 
     def show(self, back: Direction) -> bool:
-        """Show the subscriptions and clients of the source at the target; whether all are shown.
+        """Announce the subscriptions and clients of the source in the target; return whether all are announced.
 
-        Publishers there may send a message as soon as they see a subscription, and it has to be heard by then.
+        Publishers there may send a message as soon as they discover a subscription, so the bridge must be listening by
+        then.
 
         Args:
-            back: the other way, which listens at the target.
+            back: the opposite direction, which listens in the target.
         """
         now = time.monotonic()
         for gid in self._unseen.keys() - self._wanted_presences.keys():
@@ -134,11 +136,11 @@ class Direction:
         return not self._unseen
 
     def hears(self, name: str) -> bool:
-        """Whether a topic is listened to at the source."""
+        """Return whether the bridge listens to a topic in the source."""
         return any(stream.name == name for stream in self._taps)
 
     def reaches(self, subscription: EndpointInfo) -> bool:
-        """Whether a subscription at the target can hear a publisher that is carried."""
+        """Return whether a subscription in the target can receive from a publisher that is carried."""
         return any(
             publisher.info.name == subscription.name
             and can_hear(subscription, publisher.info, keyed=self._target.needs_hashes)
@@ -146,7 +148,7 @@ class Direction:
         )
 
     def settle(self) -> bool:
-        """Continue with work that had to wait (messages, removals, matching); whether nothing waits any more."""
+        """Continue with work that had to wait (messages, removals, matching); return whether all of it is done."""
         is_settled = not self._leaving
         self._publish_early()
         self._remove_departed()
@@ -165,7 +167,8 @@ class Direction:
     # --- inside ------------------------------------------------------------------------------------------------------
 
     def _remove_departed(self) -> None:
-        """Remove the mirrors of publishers that have left, once their last messages were carried, and empty nodes."""
+        """Remove empty nodes, and the mirrors of publishers that have left once their last messages have been carried.
+        """
         for gid, quiet in tuple(self._leaving.items()):
             publisher = self._publishers[gid]
             tap = self._taps.get(publisher.stream)
@@ -185,7 +188,9 @@ class Direction:
         return self._nodes[info.node.full_name]
 
     def _decide(self) -> None:
-        """Decide which endpoints and nodes of the source are mirrored at the target, and what is awaited there."""
+        """Decide which endpoints and nodes of the source are mirrored in the target, and which streams are awaited
+        there.
+        """
         seen, there = self._source.seen, self._target.seen
         self._wanted_publishers, self._wanted_services, self._wanted_nodes = {}, {}, {}
         self._wanted_presences = {}
@@ -218,12 +223,12 @@ class Direction:
         }
 
     def _is_expected(self, publisher: EndpointInfo) -> bool:
-        """Whether a subscription at the target can hear a publisher."""
+        """Return whether a subscription in the target can receive from a publisher."""
         demanding = self._target.seen.demanded.get(publisher.name, ())
         return any(can_hear(endpoint, publisher, keyed=self._target.needs_hashes) for endpoint in demanding)
 
     def _can_carry(self, info: EndpointInfo) -> bool:
-        """Whether a topic or service of this type can be made at the target; once for each, a warning if not."""
+        """Return whether a topic or service with this type can be created in the target; if not, warn once."""
         if not self._target.needs_hashes or hash_of(info):
             return True
         if info.name not in self._warned:
@@ -237,10 +242,12 @@ class Direction:
         return False
 
     def _tap(self) -> None:
-        """Subscribe to the streams that have subscriptions at the target.
+        """Subscribe to the streams that have subscriptions in the target.
 
-        A stream with history is kept until its publishers are gone: subscribed to again, it would reach late joiners
-        twice. As long as a topic has no publisher, and while the first is being matched, every possible stream is kept.
+        A stream with history is kept until its publishers are gone: if the bridge subscribed again, late joiners would
+        receive
+        it twice. Every possible stream is kept while a topic has no publisher, and while its first publisher is being
+        matched.
         """
         demanded = self._target.seen.demanded
         wanted = {
@@ -253,7 +260,8 @@ class Direction:
         wanted |= {stream for stream in self._awaited if stream.name not in met}
         for stream in self._taps.keys() - wanted:
             self._taps.pop(stream).close()
-        # A publisher may send at once when it sees one of several: the one that most publishers match is made first.
+        # A publisher may send as soon as it discovers one of several subscriptions, so create the most widely matching
+        # first.
         for stream in sorted(wanted - self._taps.keys(), key=lambda stream: (stream.history, stream.reliability)):
             self._taps[stream] = Tap(self._source.own, stream, self._carry)
 
@@ -277,7 +285,7 @@ class Direction:
         for _ in range(len(self._early)):
             early = self._early.popleft()
             if early.tap is not self._taps.get(early.tap.stream):
-                continue  # it is listened to no more, for another bridge carries it
+                continue  # no longer listened to, because another bridge carries it
             publisher = self._publisher(early.gid)
             if publisher is None and now < early.until:
                 self._early.append(early)
@@ -290,7 +298,7 @@ class Direction:
         return self._publishers.get(self._aliases.get(gid, gid))
 
     def _any_of(self, early: Early) -> MirroredPublisher | None:
-        """The mirror for messages whose gid no publisher was announced with, as of some programs over Zenoh."""
+        """Return a mirror for messages whose gid no publisher has announced, as with some programs over Zenoh."""
         for gid, publisher in self._publishers.items():
             if publisher.stream == early.tap.stream:
                 self._aliases[early.gid] = gid

@@ -1,6 +1,7 @@
-"""Which topics and services a bridge carries, by patterns for their names.
+"""Select the topics and services that a bridge carries, by patterns for their names.
 
-A pattern such as ``/robot1`` matches that name and all names below it; ``*`` in it matches any text without a slash.
+A pattern such as ``/robot1`` matches that name and all names below it; ``*`` in a pattern matches any text without a
+slash.
 """
 
 from __future__ import annotations
@@ -15,14 +16,14 @@ _ACTION = "/_action/"
 
 
 class NameFilter:
-    """Lets names through.
+    """A filter of names.
 
     Args:
-        allowed: patterns, one of which a name has to meet; all names where there is none.
-        denied: patterns that no name may meet, whatever is allowed.
+        allowed: patterns, at least one of which a name must match; without patterns, all names are allowed.
+        denied: patterns that no name may match, even if it is allowed.
 
     Raises:
-        LinkwrightError: CLI453, a pattern is none.
+        LinkwrightError: CLI453, a pattern is invalid.
     """
 
     def __init__(self, allowed: Iterable[str] = (), denied: Iterable[str] = ()) -> None:
@@ -30,7 +31,10 @@ class NameFilter:
         self._denied = [_compiled(pattern) for pattern in denied]
 
     def passes(self, name: str) -> bool:
-        """Whether a topic or service of an absolute name is carried; parts of an action follow the action's name."""
+        """Return whether a topic or service, given by its absolute name, is carried.
+
+        The topics and services of an action are treated like the action's name.
+        """
         name = name.partition(_ACTION)[0]
         if any(pattern.match(name) for pattern in self._denied):
             return False

@@ -32,7 +32,7 @@ class Tap:
     """The bridge's subscription to a stream.
 
     Args:
-        node: the bridge's own in the network that it listens to.
+        node: the bridge's own node in the network that it listens to.
         stream: the stream to listen to.
         take: called with the tap, each message as bytes, and the message's info.
     """
@@ -55,26 +55,26 @@ class Tap:
         self._subscription = node.add(subscription)
 
     def has_more(self) -> bool:
-        """Whether messages wait for their turn."""
+        """Return whether messages are waiting to be handled."""
         return self._subscription.has_work()
 
     def close(self) -> None:
-        """Listen no more."""
+        """Stop listening."""
         self._subscription.destroy()
 
 
 class MirroredPublisher:
-    """Publishes in one network the messages of a publisher in the other one.
+    """Publishes, in one network, the messages of a publisher in the other network.
 
-    Messages wait until a subscription matches it: present subscriptions have not met it yet.
+    Messages wait until a subscription is matched, because existing subscriptions have not discovered the publisher yet.
 
     Args:
-        node: the bridge's node that has the name of the publisher's.
+        node: the bridge's node with the name of the publisher's node.
         info: the publisher.
-        stream: its stream at home.
+        stream: its stream in its own network.
 
     Attributes:
-        expects_listeners: whether a subscription is known that can hear it.
+        expects_listeners: whether a subscription is known that can receive from it.
     """
 
     def __init__(self, node: NodeHandle, info: EndpointInfo, stream: Stream) -> None:
@@ -92,7 +92,7 @@ class MirroredPublisher:
 
     @property
     def gid(self) -> bytes:
-        """Its own gid."""
+        """The gid of the mirror itself."""
         return self._publisher.gid
 
     def listeners(self) -> int:
@@ -101,7 +101,7 @@ class MirroredPublisher:
 
     @property
     def waits(self) -> bool:
-        """Whether its messages are held back until a subscription matches."""
+        """Whether its messages are held back until a subscription is matched."""
         return self._waiting is not None
 
     def put(self, data: bytes) -> None:
@@ -113,7 +113,7 @@ class MirroredPublisher:
             self.settle()
 
     def settle(self) -> bool:
-        """Publish the messages that were held back, if it is time; whether none is left."""
+        """Publish the messages that were held back, if it is time; return whether none is left."""
         if self._waiting is not None and (self.stream.lasts or self.listeners() or self._has_waited()):
             waiting, self._waiting = self._waiting, None
             for data in waiting:
@@ -121,13 +121,13 @@ class MirroredPublisher:
         return self._waiting is None
 
     def close(self) -> None:
-        """Take it away."""
+        """Remove the mirror."""
         if self._outlet is not None:
             self._outlet.close()
         self._publisher.destroy()
 
     def has_more(self) -> bool:
-        """Whether messages wait to be published."""
+        """Return whether messages are waiting to be published."""
         return self._outlet is not None and self._outlet.has_more()
 
     def _has_waited(self) -> bool:
@@ -142,11 +142,11 @@ class MirroredPublisher:
 
 
 class MirroredService:
-    """Answers in one network as a service of the other one does.
+    """Offers, in one network, a service of the other network.
 
     Args:
-        node: the bridge's node that has the name of the service's.
-        home: the bridge's own node in the other network, which asks there.
+        node: the bridge's node with the name of the service's node.
+        home: the bridge's own node in the service's network, which calls the service.
         info: the service.
     """
 
@@ -161,7 +161,7 @@ class MirroredService:
         self._service: Service[Any, Any] | None = None
 
     def settle(self) -> bool:
-        """Offer the service once it can be asked; whether it is offered."""
+        """Offer the service once it can be called; return whether it is offered."""
         if self._service is None and self._client.service_is_ready():
             service: Service[Any, Any] = Service(
                 self._node, self.info.type_name, self.info.name, self._qos, self._ask, replying=True, raw=True
@@ -171,7 +171,7 @@ class MirroredService:
         return self._service is not None
 
     def close(self) -> None:
-        """Remove it; the network notifies a caller that waits for a response that the service has left."""
+        """Remove the service; the network notifies callers that wait for a response that it has left."""
         if self._service is not None:
             self._service.destroy()
         self._client.destroy()

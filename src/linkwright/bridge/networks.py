@@ -1,4 +1,4 @@
-"""The networks that a bridge can connect, by the words of its command line: ``dds``, ``zenoh``, ``dds:5``."""
+"""The networks that a bridge can connect, as written on its command line: ``dds``, ``zenoh``, ``dds:5``."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _JOINED_WITHIN = 10.0
 
 @dataclass(frozen=True)
 class _Kind:
-    """A transport.
+    """A kind of network.
 
     Attributes:
         label: its name.
-        why_not: why it cannot be had; empty where it can.
-        open: makes the transport of a domain and a bridge.
+        why_not: returns the reason why it is not available; empty if it is.
+        open: creates the transport for a domain and a bridge.
         needs_hashes: see `Side`.
     """
 
@@ -54,10 +54,10 @@ _KINDS = {
 
 @dataclass(frozen=True)
 class Network:
-    """A network.
+    """A network that a bridge can join.
 
     Attributes:
-        kind: a key of the table above.
+        kind: a key of the table of kinds.
         domain_id: the ROS domain.
     """
 
@@ -70,7 +70,7 @@ class Network:
         return f"{_KINDS[self.kind].label} (domain {self.domain_id})"
 
     async def join(self, bridge_id: str, log: LogSink) -> Side:
-        """Join it.
+        """Join the network.
 
         Raises:
             LinkwrightError: CLI454, its package is not installed; DDS101 to DDS112, it cannot be joined.
@@ -93,10 +93,11 @@ class Network:
 
 
 def read_network(text: str) -> Network:
-    """The network that words of a command line name.
+    """Return the network that command-line text names.
 
     Raises:
-        LinkwrightError: CLI451, they name none; DDS101, the domain is not one; DDS121, security is enforced.
+        LinkwrightError: CLI451, it does not name a network; DDS101, the domain is not valid; DDS121, security is
+            enforced.
     """
     kind, colon, domain = text.partition(":")
     if kind not in _KINDS or (colon and not domain):
@@ -115,4 +116,4 @@ def read_network(text: str) -> Network:
 
 
 def _ignore_names(_names: frozenset[str]) -> None:
-    """Nodes of a bridge have the names of others by intent."""
+    """Ignore equal node names, because nodes of a bridge have the names of other nodes on purpose."""

@@ -1,4 +1,4 @@
-"""A queue and a thread for a publisher that may block, so that the rest of a bridge does not."""
+"""A queue and a thread for a publisher that may block, so that it does not block the rest of a bridge."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from linkwright.wire.living_threads import guarded
 
 
 class Outlet:
-    """Publishes messages in order, in a thread of its own.
+    """Publishes messages in order, in a separate thread.
 
-    A publisher that keeps everything waits for a listener that has stopped, for seconds; the rest of a bridge's traffic
-    continues meanwhile.
+    A publisher that keeps all messages waits, for seconds, for a subscriber that has stopped; meanwhile the rest of a
+    bridge's traffic continues.
 
     Args:
         publish: publishes a message.
-        failed: called with the error when it cannot.
+        failed: called with the error if publishing fails.
     """
 
     def __init__(self, publish: Callable[[bytes], object], failed: Callable[[Exception], object]) -> None:
@@ -30,18 +30,18 @@ class Outlet:
         self._thread: threading.Thread | None = None
 
     def put(self, data: bytes) -> None:
-        """Have a message published."""
+        """Queue a message for publishing."""
         if self._thread is None:
             self._thread = threading.Thread(target=self._run, name="linkwright-bridge-outlet", daemon=True)
             self._thread.start()
         self._queue.put(data)
 
     def has_more(self) -> bool:
-        """Whether messages wait, or one is being published."""
+        """Return whether messages are waiting, or one is being published."""
         return bool(self._queue.unfinished_tasks)
 
     def close(self) -> None:
-        """Publish no more; waiting messages are lost."""
+        """Stop publishing; waiting messages are lost."""
         self._queue.put(None)
 
     def _run(self) -> None:
@@ -50,5 +50,5 @@ class Outlet:
             self._queue.task_done()
 
     def _publish_one(self, data: bytes) -> None:
-        with suppress(InvalidHandleError):  # the publisher was taken away
+        with suppress(InvalidHandleError):  # the publisher was destroyed
             self._publish(data)

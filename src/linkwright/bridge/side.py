@@ -1,4 +1,4 @@
-"""One of the two networks that a bridge connects: the graph of others there, and the bridge's own nodes."""
+"""One of the two networks that a bridge connects: the graph of other nodes there, and the bridge's own nodes."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ class Seen:
     Attributes:
         nodes: the nodes.
         endpoints: the endpoints whose node is known.
-        demanded: the subscriptions, by their topic.
-        served: names of services that have a server.
-        carried: the endpoints that bridges with precedence carry to here, which this one leaves to them.
-        carried_nodes: full names of the nodes that they have here for those of the other side.
+        demanded: the subscriptions, by topic.
+        served: the names of services that have a server.
+        carried: the endpoints that bridges with precedence carry to this network, which this bridge leaves to them.
+        carried_nodes: the full names of the nodes that those bridges have here for nodes of the other network.
         by_bridges: the gids of publishers of other bridges.
     """
 
@@ -44,14 +44,14 @@ class Seen:
 
 
 class Side:
-    """A network.
+    """One of the two networks of a bridge.
 
     Args:
         label: its name in messages.
-        graph: the bridge's graph there.
-        transport: how it has joined.
-        bridge_id: the bridge's own.
-        needs_hashes: whether a type has to be known, or its hash, for a publisher to be made.
+        graph: the bridge's graph in this network.
+        transport: the transport that connects the graph to the network.
+        bridge_id: the id of the bridge.
+        needs_hashes: whether a publisher can be created only if its type, or the hash of its type, is known.
     """
 
     def __init__(
@@ -70,28 +70,30 @@ class Side:
         """Wait until the network is joined.
 
         Args:
-            seconds: at most; where settings have it wait for a router that is as long as they say.
+            seconds: the longest wait; if the settings require waiting for a router, they determine the longest wait
+                instead.
 
         Raises:
             LinkwrightError: DDS102, DDS111, DDS112, it cannot be joined.
         """
         while not await asyncio.to_thread(self._transport.wait_until_ready, seconds) and self._transport.waits:
-            pass  # it logs the reason of the wait
+            pass  # the transport logs the reason for the wait
         if self._transport.problem is not None:
             raise self._transport.problem
 
     def open_node(self, node: NodeIdentity) -> NodeHandle:
-        """A node of the bridge's, with a name and nothing else."""
+        """Create a node of the bridge that has only a name."""
         return self.graph.open_node(NodeIdentity(node.name, node.namespace, self._enclave), Remappings(()))
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Register a callback, called from any thread, for every change of the graph, killed processes included."""
+        """Register a callback for every change of the graph, including killed processes; it is called from any thread.
+        """
         self._transport.watch(changed)
         self._transport.watch_lost(lambda _publisher: changed())
         self._transport.look_around()
 
     def update(self) -> None:
-        """Take a new snapshot, `seen`."""
+        """Update the snapshot `seen`."""
         seen = Seen()
         for node in self._transport.remote_nodes():
             other = _bridge_of(node)
@@ -117,12 +119,12 @@ class Side:
 
 
 def provision_of(endpoint: EndpointInfo) -> Provision:
-    """The identity of an endpoint, whatever its gid."""
+    """Return the identity of an endpoint, regardless of its gid."""
     assert endpoint.node is not None
     return endpoint.node.full_name, endpoint.kind, endpoint.name, endpoint.type_name
 
 
 def _bridge_of(node: NodeIdentity) -> str:
-    """The id of the bridge that a node belongs to; empty for a node of the network itself."""
+    """Return the id of the bridge that a node belongs to; empty for a node that is not a bridge's."""
     root, slash, bridge_id = node.enclave.rpartition("/")
     return bridge_id if slash and root == ENCLAVE else ""

@@ -23,12 +23,12 @@ _ASSUMED_DEPTH = 10
 
 
 class Stream(NamedTuple):
-    """A topic with the type and quality of service that one subscription of a bridge receives all publishers of.
+    """A topic with a type and quality of service; one subscription receives from all publishers of a stream.
 
     Attributes:
         name: the topic.
         type_name: its type.
-        type_hash: of the type; empty where it does not separate topics: a subscription hears all hashes then.
+        type_hash: the hash of its type; empty if hashes do not separate topics, so that a subscription receives all.
         reliability: the reliability that its publishers offer.
         durability: the durability that its publishers offer.
         history: the history that its publishers offer.
@@ -43,17 +43,17 @@ class Stream(NamedTuple):
 
     @property
     def lasts(self) -> bool:
-        """Whether late joiners get earlier messages."""
+        """Whether late joiners receive earlier messages."""
         return self.durability is DurabilityPolicy.TRANSIENT_LOCAL
 
 
 def stream_of(publisher: EndpointInfo, *, keyed: bool) -> Stream:
-    """The stream that a publisher is part of.
+    """Return the stream that a publisher is part of.
 
     Args:
         publisher: the publisher.
-        keyed: whether the hash of their type separates topics, and quality of service separates no endpoints, as over
-            Zenoh.
+        keyed: whether topics are separated by the hash of their type, and endpoints are not separated by quality of
+            service, as over Zenoh.
     """
     qos = offered(publisher.qos)
     reliability = ReliabilityPolicy.RELIABLE if keyed else qos.reliability
@@ -61,11 +61,11 @@ def stream_of(publisher: EndpointInfo, *, keyed: bool) -> Stream:
 
 
 def awaited_streams(subscription: EndpointInfo, *, keyed: bool) -> set[Stream]:
-    """The streams of volatile publishers that might reach a subscription. Streams with history are added later.
+    """Return the streams of volatile publishers that might reach a subscription; streams with history are added later.
 
     Args:
         subscription: the subscription.
-        keyed: see `stream_of`; where it is false, few subscriptions announce their history.
+        keyed: see `stream_of`; if it is false, few subscriptions announce their history.
     """
     volatile, last = DurabilityPolicy.VOLATILE, HistoryPolicy.KEEP_LAST
     reliable = ReliabilityPolicy.RELIABLE
@@ -78,12 +78,12 @@ def awaited_streams(subscription: EndpointInfo, *, keyed: bool) -> set[Stream]:
 
 
 def can_hear(subscription: EndpointInfo, publisher: EndpointInfo, *, keyed: bool) -> bool:
-    """Whether a subscription will hear the profile that is offered for a publisher of its topic.
+    """Return whether a subscription can receive from the mirror of a publisher of its topic.
 
     Args:
-        subscription: the subscription, in the network that is carried to.
-        publisher: the publisher.
-        keyed: see `stream_of`, of the network that is carried to.
+        subscription: the subscription, in the target network.
+        publisher: the publisher, whose offered profile the mirror has.
+        keyed: see `stream_of`, for the target network.
     """
     if subscription.type_name != publisher.type_name:
         return False
@@ -93,7 +93,7 @@ def can_hear(subscription: EndpointInfo, publisher: EndpointInfo, *, keyed: bool
 
 
 def hash_of(endpoint: EndpointInfo) -> str:
-    """The hash of an endpoint's type, as it announces it or as the package here has it; empty where neither does."""
+    """Return the hash of an endpoint's type, as announced or from the package here; empty if neither is available."""
     return endpoint.type_hash or _known_hash(endpoint)
 
 
@@ -112,13 +112,13 @@ def _stream(
     *,
     keyed: bool,
 ) -> Stream:
-    # An endpoint of a type that is not known here may not announce its hash, and hears its publishers all the same.
+    # An endpoint of a type that is not known here may not announce its hash, but it still receives from its publishers.
     hashed = hash_of(endpoint) if keyed and _known_hash(endpoint) else ""
     return Stream(endpoint.name, endpoint.type_name, hashed, reliability, durability, history)
 
 
 def offered(qos: QoSProfile) -> QoSProfile:
-    """The profile that a publisher offers, with ROS's defaults where discovery does not give it."""
+    """Return the profile that a publisher offers, with ROS's defaults for values that discovery does not provide."""
     lasts = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
     keeps_all = qos.history is HistoryPolicy.KEEP_ALL
     is_announced = qos.history in (HistoryPolicy.KEEP_LAST, HistoryPolicy.KEEP_ALL)

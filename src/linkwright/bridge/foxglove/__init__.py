@@ -1,4 +1,4 @@
-"""foxglove_bridge: the graph over a WebSocket, by the protocol of Foxglove and Lichtblick."""
+"""The foxglove_bridge: the graph over a WebSocket, with the protocol of Foxglove and Lichtblick."""
 
 from linkwright.bridge.foxglove.bridge import FoxgloveBridge
 

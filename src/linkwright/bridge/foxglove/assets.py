@@ -1,4 +1,4 @@
-"""Assets for clients: meshes and images of packages that a robot description names."""
+"""Assets for clients: meshes and images in packages that a robot description names."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ _LARGEST = 256 << 20
 
 
 class AssetRefusedError(Exception):
-    """An asset is refused; the text gives the reason."""
+    """Raised when an asset is refused; the text gives the reason."""
 
 
 class Assets:
     """Finds files by their ``package://`` addresses.
 
     Args:
-        finder: finds packages; None for that of the environment, made when it is needed.
+        finder: finds packages; None for the finder of the environment, created on demand.
     """
 
     def __init__(self, finder: PackageFinder | None = None) -> None:
@@ -63,7 +63,9 @@ class Assets:
 
 
 def _content(package: str, share: Path, relative: PurePosixPath) -> bytes:
-    """Read the file, after following and checking links: colcon lays some into other folders of the package."""
+    """Read a file after resolving and checking links, because colcon links some files into other folders of the
+    package.
+    """
     path = (share / relative).resolve(strict=True)
     if not path.is_relative_to(share.resolve(strict=True)):
         enclosing = enclosing_package(path.parent)

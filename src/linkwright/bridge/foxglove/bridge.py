@@ -1,4 +1,4 @@
-"""foxglove_bridge: serves the graph to Foxglove and Lichtblick over a WebSocket."""
+"""The node foxglove_bridge, which serves the graph to Foxglove and Lichtblick over a WebSocket."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _LOOK_AFTER = 0.1
 
 
 class FoxgloveBridge(SingleNode):
-    """The node, with the parameters of ROS's foxglove_bridge where it has the same.
+    """The node foxglove_bridge, with the parameters that it shares with the node of ROS.
 
     It binds the loopback address unless `address` names another, because every client that connects may publish, call
     services and set parameters.
@@ -75,7 +75,7 @@ class FoxgloveBridge(SingleNode):
 
     @property
     def address(self) -> str:
-        """The address for clients."""
+        """The address that clients connect to."""
         host, port = self._listener.getsockname()[:2]
         return f"ws://[{host}]:{port}" if ":" in host else f"ws://{host}:{port}"
 
@@ -112,7 +112,7 @@ class FoxgloveBridge(SingleNode):
         self._offer.services.look()
 
     def _graph_changed(self) -> None:
-        with suppress(RuntimeError):  # the loop is closed
+        with suppress(RuntimeError):  # the event loop is closed
             self._loop.call_soon_threadsafe(self._look_soon)
 
     def _look_soon(self) -> None:
@@ -233,7 +233,7 @@ def _listen(address: str, port: int) -> socket.socket:
     """Open a listening socket.
 
     Raises:
-        LinkwrightError: NODE702, it cannot listen there.
+        LinkwrightError: NODE702, the address or port cannot be used.
     """
     try:
         listener = socket.create_server((address, port), family=socket.AF_INET6 if ":" in address else socket.AF_INET)

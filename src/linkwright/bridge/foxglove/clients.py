@@ -1,4 +1,4 @@
-"""Connected clients, each with its queue."""
+"""Connected clients, each with its send queue."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ _MOST_CONTROL = 4096
 
 
 class Client:
-    """One connection.
+    """A connection to a client.
 
-    Data that a slow client leaves unread is dropped, the oldest first; everything else is kept.
+    If a client reads too slowly, the oldest waiting data is dropped; everything else is kept.
 
     Args:
-        socket: of the client.
-        most_bytes: data that may wait.
+        socket: the WebSocket of the client.
+        most_bytes: the maximum number of bytes of data that may wait.
     """
 
     def __init__(self, socket: WebSocketResponse, most_bytes: int) -> None:

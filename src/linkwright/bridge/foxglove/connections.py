@@ -13,7 +13,7 @@ Connections = tuple[Names, Names, Names]
 
 
 def connections(node: Node) -> Connections:
-    """The connection graph of a node's graph now."""
+    """Return the current connection graph of a node's graph."""
     kinds = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION, EndpointKind.SERVICE)
     found: dict[EndpointKind, dict[str, set[str]]] = {kind: {} for kind in kinds}
     for endpoint in node.graph.endpoints():
@@ -24,7 +24,7 @@ def connections(node: Node) -> Connections:
 
 
 def update(before: Connections | None, now: Connections) -> dict[str, Any]:
-    """The message with the changes; with everything for a client that has nothing yet."""
+    """Return the message with the changes; for a client that has nothing yet, with everything."""
     old = before or ({}, {}, {})
     published, subscribed, served = (
         {name: ids for name, ids in new.items() if known.get(name) != ids} for known, new in zip(old, now, strict=True)

@@ -1,4 +1,4 @@
-"""Filtering topics, services and parameters by foxglove_bridge's lists of regular expressions."""
+"""Filter topics, services and parameters by foxglove_bridge's lists of regular expressions."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ _MOST_KNOWN = 10_000
 
 
 class NameFilter:
-    """Filters names by regular expressions that match the full name. A slow expression is not used again.
+    """Filters names by regular expressions that must match the full name; a slow expression is not used again.
 
     Args:
         parameter: the parameter with the expressions, for messages.
         expressions: the regular expressions.
 
     Raises:
-        LinkwrightError: NODE701, one is not a regular expression.
+        LinkwrightError: NODE701, one of them is not a regular expression.
     """
 
     def __init__(self, parameter: str, expressions: Sequence[str]) -> None:
@@ -27,7 +27,7 @@ class NameFilter:
         self._known: dict[str, bool] = {}
 
     def accepts(self, name: str) -> bool:
-        """Whether a name passes."""
+        """Return whether a name passes the filter."""
         known = self._known.get(name)
         if known is None:
             if len(self._known) == _MOST_KNOWN:

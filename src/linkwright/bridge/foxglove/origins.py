@@ -1,4 +1,4 @@
-"""Which web pages may connect: any page that a user opens can reach addresses of this machine."""
+"""Decide which web pages may connect, because any page that a user opens can reach addresses of this machine."""
 
 from __future__ import annotations
 

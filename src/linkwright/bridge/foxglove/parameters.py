@@ -20,7 +20,7 @@ class Parameters:
     """Reads and sets the parameters of other nodes.
 
     Args:
-        node: the node that asks.
+        node: the node that sends the requests.
         wanted: the filter of parameter names.
     """
 
@@ -30,7 +30,7 @@ class Parameters:
         self._clients: dict[str, AsyncParameterClient] = {}
 
     async def get(self, names: Sequence[str]) -> list[dict[str, Any]]:
-        """The parameters of these names, or all, in the form for clients."""
+        """Return the parameters with these names, or all parameters, in the form for clients."""
         by_node: dict[str, list[str] | None] = {}
         if names:
             for name in names:
@@ -93,7 +93,7 @@ class Parameters:
         return self._clients[node]
 
     async def _answer(self, future: Any) -> Any:
-        """The result of a future of the graph; None if it takes too long."""
+        """Return the result of a future of the graph; None if it takes too long."""
         loop = asyncio.get_running_loop()
         done = asyncio.Event()
         future.add_done_callback(lambda _: loop.call_soon_threadsafe(done.set))
@@ -105,7 +105,7 @@ class Parameters:
 
 
 def parameter_entry(name: str, value: Any) -> dict[str, Any]:
-    """A parameter in the form for clients."""
+    """Return a parameter in the form for clients."""
     parameter: dict[str, Any] = {"name": name, "value": value}
     if isinstance(value, (bytes, bytearray)):
         parameter.update(value=base64.b64encode(value).decode(), type="byte_array")

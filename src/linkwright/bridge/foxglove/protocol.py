@@ -29,12 +29,12 @@ class StatusLevel(IntEnum):
 
 
 class BadFrameError(ValueError):
-    """Bytes from a client are not a message of the protocol; the text gives the reason."""
+    """Raised when bytes from a client are not a message of the protocol; the text gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class ClientMessage:
-    """A message that a client publishes on a channel of its own."""
+    """A message that a client publishes on a channel that it advertised."""
 
     channel: int
     data: bytes
@@ -51,28 +51,28 @@ class ServiceRequest:
 
 
 def message_data(subscription: int, time_ns: int, data: bytes) -> bytes:
-    """A binary frame with a message of a channel."""
+    """Encode a binary frame with a message of a channel."""
     return struct.pack("<BIQ", _MESSAGE, subscription, max(0, time_ns)) + data
 
 
 def time_frame(time_ns: int) -> bytes:
-    """A binary frame with the time of the graph."""
+    """Encode a binary frame with the time of the graph."""
     return struct.pack("<BQ", _TIME, max(0, time_ns))
 
 
 def service_response(service: int, call: int, data: bytes) -> bytes:
-    """A binary frame with the response of a service."""
+    """Encode a binary frame with the response of a service."""
     encoding = ENCODING.encode()
     return struct.pack("<BIII", _SERVICE_RESPONSE, service, call, len(encoding)) + encoding + data
 
 
 def asset(request: int, data: bytes) -> bytes:
-    """A binary frame with an asset."""
+    """Encode a binary frame with an asset."""
     return struct.pack("<BIBI", _ASSET, request, 0, 0) + data
 
 
 def asset_error(request: int, why: str) -> bytes:
-    """A binary frame for an asset that is refused, with the reason."""
+    """Encode a binary frame with the reason why an asset is refused."""
     text = why.encode()
     return struct.pack("<BIBI", _ASSET, request, 1, len(text)) + text
 
@@ -100,5 +100,5 @@ def read_frame(frame: bytes) -> ClientMessage | ServiceRequest:
 
 
 def status(level: StatusLevel, message: str) -> dict[str, Any]:
-    """A status message for the user of the client."""
+    """Return a status message for the user of the client."""
     return {"op": "status", "level": int(level), "message": message}

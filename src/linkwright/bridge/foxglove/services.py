@@ -19,19 +19,19 @@ _PATIENCE = 10.0
 
 
 class CallFailedError(Exception):
-    """A service call failed; the text gives the reason."""
+    """Raised when a service call fails; the text gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class OfferedService:
-    """A service with its type and number."""
+    """A service with its type and id."""
 
     number: int
     name: str
     type_name: str
 
     def advertisement(self) -> dict[str, Any]:
-        """The service in the form for clients, with the keys of older versions too."""
+        """Return the service in the form for clients, including the keys of older protocol versions."""
         schemas = {part: schema_of(f"{self.type_name}_{part}") for part in ("Request", "Response")}
         advertisement: dict[str, Any] = {"id": self.number, "name": self.name, "type": self.type_name}
         for part, schema in schemas.items():
@@ -49,7 +49,7 @@ class Services:
     """The services that clients can call.
 
     Args:
-        node: calls.
+        node: the node that calls them.
         wanted: the filter of service names.
     """
 
@@ -61,11 +61,11 @@ class Services:
         self._last = 0
 
     def all(self) -> list[OfferedService]:
-        """All services now."""
+        """Return the currently available services."""
         return list(self._offered.values())
 
     def look(self) -> tuple[list[OfferedService], list[int]]:
-        """Return the services added since the last call, and the numbers of the removed ones."""
+        """Return the services added since the last call, and the ids of the removed ones."""
         there = {
             (endpoint.name, endpoint.type_name)
             for endpoint in self._node.graph.endpoints()
@@ -80,17 +80,17 @@ class Services:
             try:
                 get_service(type_name)
             except LinkwrightError:
-                continue  # its definition is not here
+                continue  # the definition of its type is not available
             self._last += 1
             self._offered[name, type_name] = OfferedService(self._last, name, type_name)
             come.append(self._offered[name, type_name])
         return come, gone
 
     async def call(self, request: ServiceRequest) -> bytes:
-        """Call a service; its response as CDR.
+        """Call a service; return its response as CDR.
 
         Raises:
-            CallFailedError: there is none.
+            CallFailedError: there is no response.
         """
         service = next(
             (

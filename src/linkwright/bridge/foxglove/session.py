@@ -52,7 +52,7 @@ class Session:
     """Handles the requests of one client.
 
     Attributes:
-        watches_connections: whether the client is notified of connections.
+        watches_connections: whether the client is notified of changes of the connection graph.
         parameters: names of the parameters whose changes are sent to the client; empty for all, None for none.
     """
 
@@ -80,7 +80,7 @@ class Session:
             self._complain(f"the message is not of the protocol: {type(error).__name__}: {str(error)[:200]}")
 
     def graph_changed(self, gone: list[int]) -> None:
-        """Drop subscriptions of channels that went, and update the connection graph."""
+        """Drop subscriptions of channels that were removed, and update the connection graph."""
         for number, forwarding in list(self._forwardings.items()):
             if forwarding.channel.number in gone:
                 self._forwardings.pop(number).close()
@@ -95,7 +95,7 @@ class Session:
                 self._known = now
 
     def close(self) -> None:
-        """Close all that the client opened."""
+        """Close everything that the client has opened."""
         for task in self._tasks:
             task.cancel()
         for forwarding in self._forwardings.values():
@@ -171,7 +171,7 @@ class Session:
         else:
             self._publications[number] = Publication(self.offer.node, channel)
 
-    # --- questions ---------------------------------------------------------------------------------------------
+    # --- requests ----------------------------------------------------------------------------------------------
 
     def _run(self, work: Coroutine[Any, Any, None]) -> None:
         if len(self._tasks) >= _MOST_TASKS:

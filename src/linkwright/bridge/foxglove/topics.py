@@ -21,7 +21,7 @@ _DEPTH = 100
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """A topic with its type and number."""
+    """A topic with its type and channel id."""
 
     number: int
     topic: str
@@ -29,7 +29,7 @@ class Channel:
     schema: str
 
     def advertisement(self) -> dict[str, Any]:
-        """The channel in the form for clients."""
+        """Return the channel in the form for clients."""
         return {
             "id": self.number,
             "topic": self.topic,
@@ -41,10 +41,10 @@ class Channel:
 
 
 class Channels:
-    """The channels to which clients can subscribe.
+    """The channels that clients can subscribe to.
 
     Args:
-        node: whose graph it is.
+        node: the node that provides the graph.
         wanted: the filter of topic names.
     """
 
@@ -56,15 +56,15 @@ class Channels:
         self._last = 0
 
     def all(self) -> list[Channel]:
-        """All channels now."""
+        """Return the currently available channels."""
         return list(self._channels.values())
 
     def get(self, number: int) -> Channel | None:
-        """The channel with a number."""
+        """Return the channel with an id, or None."""
         return next((channel for channel in self._channels.values() if channel.number == number), None)
 
     def look(self) -> tuple[list[Channel], list[int]]:
-        """Return the channels added since the last call, and the numbers of the removed ones."""
+        """Return the channels added since the last call, and the ids of the removed ones."""
         there = {
             (endpoint.name, endpoint.type_name)
             for endpoint in self._node.graph.endpoints()
@@ -127,10 +127,10 @@ class Forwarding:
 
 
 class Publication:
-    """Publishes the messages of a client's channel.
+    """Publishes the messages of a channel that a client advertised.
 
     Args:
-        node: publishes.
+        node: the node that publishes.
         channel: the client's advertisement of the channel.
 
     Raises:
@@ -159,5 +159,5 @@ class Publication:
 
 
 def _full_type(name: str) -> str:
-    """The full name of a type: ``std_msgs/String`` is allowed for messages too."""
+    """Return the full name of a type; for messages, the form ``std_msgs/String`` is accepted too."""
     return name.replace("/", "/msg/", 1) if name.count("/") == 1 else name
