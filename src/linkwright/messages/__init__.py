@@ -1,4 +1,4 @@
-"""ROS 2 messages, services and actions: classes made from their definitions, and their bytes, hashes and texts."""
+"""ROS 2 messages, services and actions: classes created from their definitions, and their bytes, hashes and texts."""
 
 from typing import TYPE_CHECKING
 

@@ -1,8 +1,8 @@
 """The interfaces that come with Linkwright: those of ROS 2 Humble, as one text file for each package in ``data/``.
 
-A file has the interface files of its package one after the other, each after a line such as ``=== msg/JointState``.
-Comments are our own; types that few programs use have none. It is read when the first of its interfaces is asked for.
-A head with ``jazzy`` after the name begins the form that later distributions have, which ``ROS_DISTRO`` asks for.
+A file contains the interface files of its package, each after a line such as ``=== msg/JointState``. The comments are
+our own; rarely used types have none. A file is read when the first of its interfaces is requested. A heading with
+``jazzy`` after the name begins the form of later distributions, which is used if ``ROS_DISTRO`` names one of them.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ _LATER = " jazzy"
 
 @cache
 def packages() -> tuple[str, ...]:
-    """The names of the packages, sorted."""
+    """Return the names of the packages, sorted."""
     return tuple(sorted(name[:-4] for name in os.listdir(_FOLDER) if name.endswith(".txt")))  # noqa: PTH208 - as above
 
 
 def texts(package: str) -> dict[str, str]:
-    """The interfaces of a package: kind and name, such as ``msg/JointState``, -> text; empty for an unknown package."""
+    """Return the interface files of a package, such as ``msg/JointState`` -> text; empty for an unknown package."""
     return _texts(package, not is_before_iron())
 
 

@@ -1,12 +1,12 @@
-"""Checks of values that are assigned to fields: rules and texts of rosidl_generator_py's classes (Humble).
+"""Checks of values assigned to fields, with the rules and messages of rosidl_generator_py's classes (Humble).
 
-The setters that `linkwright.messages.classes` compiles test for the usual case themselves and come here for all others.
-The functions return the value to be kept, or raise the AssertionError that rclpy's users know. Beyond rclpy, numpy
-arrays and buffers of bytes may be assigned to sequences of numbers and bools, unless a program keeps to what ROS takes
-(`keep_to_ros`).
+The setters that `linkwright.messages.classes` compiles test for the usual case themselves and call these functions for
+all others. The functions return the value to store, or raise the AssertionError that users of rclpy know. Unlike in
+rclpy, numpy arrays and byte buffers may be assigned to sequences of numbers and bools, unless a program accepts only
+what ROS accepts (`keep_to_ros`).
 
-numpy is imported for fixed arrays of numbers alone, whose fields hold its arrays: to import it takes longer than the
-rest of a verb such as ``topic list``. A program that never imported it has none of its values.
+numpy is imported only for fixed arrays of numbers, which are stored as numpy arrays: importing it takes longer than the
+rest of a command such as ``topic list``. A program that never imported numpy has no values of its types.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Unset:
-    """The mark of an argument that was not given."""
+    """The marker for an argument that was not given."""
 
     def __repr__(self) -> str:
         return "default"
@@ -40,22 +40,23 @@ _fixed_as_humble = True
 
 
 def keep_to_ros(*, as_humble: bool) -> None:
-    """Accept, in this process, only what the classes of ROS 2 accept from now on.
+    """Make this process accept only values that the classes of ROS 2 accept.
 
     Args:
-        as_humble: constructors convert the values given for fixed arrays, as up to Humble; otherwise they check them.
+        as_humble: whether constructors convert the values given for fixed arrays, as up to Humble, instead of checking
+            them.
     """
     global _keeps_to_ros, _fixed_as_humble
     _keeps_to_ros, _fixed_as_humble = True, as_humble
 
 
 def refuse_arguments(names: Iterable[str]) -> NoReturn:
-    """Refuse arguments of a constructor that name no field."""
+    """Raise an error for constructor arguments that are not fields."""
     raise AssertionError("Invalid arguments passed to constructor: " + ", ".join(sorted(names)))
 
 
 def check_int(name: str, value: Any, low: int, high: int) -> int:
-    """Check an integer in its range; bools are integers, numpy's are none (as in rclpy)."""
+    """Check the type and the range of an integer; bools are accepted, numpy's integers are not (as in rclpy)."""
     if not isinstance(value, int):
         raise AssertionError(f"The '{name}' field must be of type 'int'")  # noqa: TRY004 - rclpy\'s
     if not low <= value <= high:
@@ -65,7 +66,7 @@ def check_int(name: str, value: Any, low: int, high: int) -> int:
 
 
 def check_float(name: str, value: Any, high: float) -> float:
-    """Check a float in its range; integers are none (as in rclpy)."""
+    """Check the type and the range of a float; integers are not accepted (as in rclpy)."""
     if not isinstance(value, float):
         raise AssertionError(f"The '{name}' field must be of type 'float'")  # noqa: TRY004 - rclpy\'s
     if (value < -high or value > high) and not math.isinf(value):
@@ -89,7 +90,7 @@ def check_byte(name: str, value: Any) -> bytes:
 
 
 def check_text(name: str, value: Any, bound: int | None) -> str:
-    """Check a text and its bound."""
+    """Check a string and its bound."""
     if bound is None:
         if not isinstance(value, str):
             raise AssertionError(f"The '{name}' field must be of type 'str'")
@@ -106,7 +107,7 @@ def check_message(name: str, value: Any, cls: type) -> Any:
 
 
 def check_values(name: str, value: Any, kind: FieldType, cls: type) -> Any:
-    """Check several bools, bytes, texts or messages; the list is kept."""
+    """Check a list of bools, bytes, strings or messages; the list itself is stored."""
     if cls is bool and not _keeps_to_ros and is_array(value) and value.dtype.kind == "b":
         value = value.ravel().tolist()
     if not (
@@ -120,7 +121,7 @@ def check_values(name: str, value: Any, kind: FieldType, cls: type) -> Any:
 
 
 def check_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
-    """Check a fixed number of numbers, kept as a numpy array."""
+    """Check an array of numbers of fixed length, which is stored as a numpy array."""
     import numpy as np
 
     primitive = cast(Primitive, kind.primitive)
@@ -134,7 +135,7 @@ def check_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
 
 
 def check_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
-    """Check any number of numbers, kept as an ``array.array``; one of the right type is kept as it is."""
+    """Check a sequence of numbers, which is stored as an ``array.array``; an array of the right type is not copied."""
     primitive = cast(Primitive, kind.primitive)
     assert primitive.array_code is not None
     if isinstance(value, array):
@@ -153,11 +154,11 @@ def check_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
 
 
 def made_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
-    """Convert numbers for a constructor, which takes integers for floats, as rclpy's does."""
+    """Convert numbers for a constructor, which accepts integers for floats as in rclpy."""
     primitive = cast(Primitive, kind.primitive)
     code = primitive.array_code
     assert code is not None
-    if value.__class__ is array and value.typecode == code and kind.size is None:  # in a fourth of the time of the rest
+    if value.__class__ is array and value.typecode == code and kind.size is None:  # four times as fast
         return value
     if not _keeps_to_ros and (isinstance(value, (bytes, bytearray, memoryview)) or is_array(value)):
         return check_sequence(name, value, kind)
@@ -167,13 +168,13 @@ def made_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
 
 
 def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
-    """Convert numbers for a constructor of a fixed array."""
+    """Convert numbers for a fixed array in a constructor."""
     import numpy as np
 
     primitive = cast(Primitive, kind.primitive)
     if not _fixed_as_humble:
         return check_fixed_array(name, value, kind)
-    if value.__class__ is np.ndarray and value.dtype.char == primitive.array_code:  # in a third of the time of the rest
+    if value.__class__ is np.ndarray and value.dtype.char == primitive.array_code:  # three times as fast
         made = value.copy()
     else:
         made = np.array(value, dtype=primitive.dtype)
@@ -184,23 +185,23 @@ def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
     return made
 
 
-# --- numpy's values, told apart without importing it ---------------------------------------------------------------
+# --- numpy's values, recognised without importing it ---------------------------------------------------------------
 
 
 def is_array(value: Any) -> TypeGuard[NDArray[Any]]:
-    """Whether a value is a ``numpy.ndarray``."""
+    """Return whether a value is a ``numpy.ndarray``."""
     array_class = ndarray_class()
     return array_class is not None and isinstance(value, array_class)
 
 
 def is_scalar(value: Any) -> TypeGuard[np.generic]:
-    """Whether a value is one of numpy's own numbers, such as ``numpy.float64``."""
+    """Return whether a value is a numpy scalar, such as ``numpy.float64``."""
     scalar_class = getattr(sys.modules.get("numpy"), "generic", None)
     return scalar_class is not None and isinstance(value, scalar_class)
 
 
 def ndarray_class() -> type[NDArray[Any]] | None:
-    """``numpy.ndarray``; None as long as numpy is not imported."""
+    """Return ``numpy.ndarray``; None if numpy has not been imported."""
     return getattr(sys.modules.get("numpy"), "ndarray", None)
 
 
@@ -235,7 +236,7 @@ def _in_range(values: Any, primitive: Primitive) -> bool:
         return True
     if primitive.is_integer:
         return bool(min(values) >= primitive.low and max(values) <= primitive.high)
-    if primitive.array_code == "d":  # whatever is a float in Python
+    if primitive.array_code == "d":  # accepts everything that is a float in Python
         return True
     return all(-primitive.high <= value <= primitive.high or not math.isfinite(value) for value in values)
 
@@ -265,7 +266,7 @@ def _from_buffer(name: str, value: bytes | bytearray | memoryview, kind: FieldTy
 
 
 def _wanted(kind: FieldType, python: type) -> str:
-    """The description of a valid value of a field with several, in rclpy's words."""
+    """Return the description of a valid value for a field with several values, in rclpy's words."""
     words = ["a set or sequence"]
     if kind.container is Container.ARRAY:
         words.append(f"with length {kind.size}")

@@ -1,9 +1,8 @@
-"""Makes the classes of messages, services and actions from generated code, each when it is first asked for.
+"""Create the classes of messages, services and actions from generated code, each on first use.
 
-Generating the Python code of a message class: constructor and setters, each as short as its field allows.
-
-Setters and constructors test for the usual case in line (``value.__class__ is float``) and leave all others to
-`linkwright.messages.checks`. A field's property reads its slot by a C function, so a read costs what a read costs.
+The code of a message class has a constructor and setters that are as short as its fields allow. They test for the usual
+case inline (``value.__class__ is float``) and leave all other cases to `linkwright.messages.checks`. The property of a
+field reads its slot through a C function, so reading a field costs no more than reading a plain attribute.
 """
 
 from __future__ import annotations
@@ -40,10 +39,10 @@ def build_class(structure: Structure, base: type, classes: dict[str, type], modu
     Args:
         structure: its definition.
         base: its base class.
-        classes: type name -> class, of every structure that fields use.
+        classes: type name -> class, for every structure that its fields use.
         module: the name of its module.
     """
-    # Names with capitals, which no field has.
+    # These names have capital letters, which field names do not have.
     scope: dict[str, Any] = {
         "U": checks.UNSET,
         "Checks": checks,
@@ -101,11 +100,11 @@ class _FieldCode:
         return f"Message field '{self.name}'."
 
     def parameter(self) -> str:
-        # A field may be called like a word of Python, such as 'from': it is set by **other then.
+        # A field may have the name of a Python keyword, such as 'from'; it is then set through **other.
         return "" if keyword.iskeyword(self.name) else f"{self.name}=U, "
 
     def initial(self) -> str:
-        """The lines of the constructor for this field."""
+        """Return the constructor's lines for this field."""
         name = argument = self.name
         lines = ""
         if keyword.iskeyword(name):
@@ -115,7 +114,7 @@ class _FieldCode:
         if self.kind.is_numeric_array:
             made = "made_fixed_array" if self.kind.container is Container.ARRAY else "made_sequence"
             return lines + f"    else: M._{name} = Checks.{made}({name!r}, {argument}, K_{name})\n"
-        if self._is_plain():  # as the setter does, except for the call
+        if self._is_plain():  # as in the setter, without the call
             lines += f"    elif {self._usual(argument)}: M._{name} = {argument}\n"
         return lines + f"    else: S_{name}(M, {argument})\n"
 
@@ -155,13 +154,13 @@ class _FieldCode:
         return f"    if not ({self._usual('value')}): value = Checks.{check}\n"
 
     def _usual_length(self) -> str:
-        """The expression that tests the length of several values with a bound."""
+        """Return the expression that tests the number of values against a bound."""
         if self.kind.size is None:
             return ""
         return f" and len(value) {'==' if self.kind.container is Container.ARRAY else '<='} {self.kind.size}"
 
     def _usual(self, value: str) -> str:
-        """The expression that tests for the usual case of a single value, which is kept as it is."""
+        """Return the expression that tests for the usual case of a single value, which is stored unchanged."""
         kind, primitive = self.kind, self.kind.primitive
         if primitive is None:
             return f"{value}.__class__ is C_{self.name}"
@@ -182,7 +181,7 @@ class _FieldCode:
         return self.kind.container is Container.ONE
 
     def _default(self) -> Any:
-        """The default value of the definition, as the field holds it; None if there is none."""
+        """Return the default value of the definition, as the field stores it; None if there is none."""
         value = self.field.default
         if value is None or self._is_plain():
             return value
@@ -240,7 +239,7 @@ _WRITTEN_BY_HAND = {"tf2_msgs/msg/TFMessage": "linkwright.messages.tf_message"}
 
 
 def get_message(name: str) -> type[Any]:
-    """The class of a message, or of a part of a service or action (``std_srvs/srv/SetBool_Request``).
+    """Return the class of a message, or of a part of a service or action (``std_srvs/srv/SetBool_Request``).
 
     Args:
         name: ``sensor_msgs/msg/JointState`` or ``sensor_msgs/JointState``.
@@ -253,34 +252,36 @@ def get_message(name: str) -> type[Any]:
 
 
 def get_service(name: str) -> type[Any]:
-    """The class of a service, with `Request` and `Response`; names and errors as `get_message`."""
+    """Return the class of a service, with `Request` and `Response`; names and errors are as in `get_message`."""
     return _named(name, ServiceType, "srv")
 
 
 def get_action(name: str) -> type[Any]:
-    """The class of an action, with `Goal`, `Result`, `Feedback` and `Impl`; names and errors as `get_message`."""
+    """Return the class of an action, with `Goal`, `Result`, `Feedback` and `Impl`; names and errors are as in
+    `get_message`.
+    """
     return _named(name, ActionType, "action")
 
 
 def get_interface(name: str) -> type[Any]:
-    """The class of a message, service or action; of ``package/Name`` the first of these that there is."""
+    """Return the class of a message, service or action; for ``package/Name``, the first of these that exists."""
     return cast("type[Any]", _classes.get(name) or _made(LIBRARY.definition(name)))
 
 
 def class_of(structure: Structure) -> type[Any]:
-    """The class of a structure."""
+    """Return the class of a structure."""
     return cast("type[Any]", _made(structure))
 
 
 def add_class(message_class: type[Message]) -> None:
-    """Register a class that was written by hand for its type."""
+    """Register a hand-written class for its type."""
     _classes[message_class.TYPE_NAME] = message_class
 
 
 def _named(name: str, base: type, kind: str) -> type[Any]:
     found = _classes.get(name)
     if found is None:
-        # Parts of services and actions are named after these: a message may be 'std_srvs/srv/SetBool_Request'.
+        # Parts of services and actions have the kind in their names: a message may be 'std_srvs/srv/SetBool_Request'.
         found = _made(LIBRARY.definition(name, *(() if name.count("/") == 2 else (kind,))))
     if not issubclass(found, base):
         raise InterfaceNotFoundError(not_of_kind(LIBRARY.definition(name), kind))
@@ -308,7 +309,7 @@ def _make(definition: Definition) -> type:
 def _make_message(structure: Structure) -> type:
     parts = {name: _made(LIBRARY.structure(name)) for name in structure.references}
     if structure.type_name in _WRITTEN_BY_HAND:
-        import_module(_WRITTEN_BY_HAND[structure.type_name])  # calls `add_class`
+        import_module(_WRITTEN_BY_HAND[structure.type_name])  # the module calls `add_class`
         return cast("type", _classes[structure.type_name])
     base = _BASES.get(structure.type_name, Message)
     return build_class(structure, base, parts, python_module(structure.type_name))
@@ -359,7 +360,7 @@ def _make_action(action: Action) -> type:
 
 
 class _LazyClass:
-    """A class attribute with a message class, made on first access."""
+    """A class attribute whose value is a message class created on first access."""
 
     def __init__(self, structure: Structure) -> None:
         self._structure = structure

@@ -1,4 +1,4 @@
-"""Converting messages to plain data and to comma-separated values, as rosidl_runtime_py does."""
+"""Convert messages to plain data and to comma-separated values, as rosidl_runtime_py does."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ CUT = "..."
 
 
 class Abridgement(NamedTuple):
-    """The parts of messages that are not shown.
+    """How the values of messages are shortened for display.
 
     Attributes:
-        truncate_length: longer texts and lists are cut to this length and end with ``...``; None for no limit.
+        truncate_length: longer strings and lists are cut to this length and end with ``...``; None for no limit.
         no_arr: whether arrays and sequences are replaced by their type and length.
-        no_str: whether texts are replaced by their length.
+        no_str: whether strings are replaced by their length.
     """
 
     truncate_length: int | None = None
@@ -28,11 +28,11 @@ class Abridgement(NamedTuple):
     no_str: bool = False
 
     def text(self, text: str) -> str:
-        """A text as it is shown."""
+        """Return a string as it is displayed."""
         return f"<string length: <{len(text)}>>" if self.no_str else self.cut(text)
 
     def cut(self, text: str) -> str:
-        """A text, cut where it is too long."""
+        """Return a string, truncated if it is too long."""
         length = self.truncate_length
         return text[:length] + CUT if length is not None and len(text) > length else text
 
@@ -40,15 +40,16 @@ class Abridgement(NamedTuple):
 def to_dict(
     message: Message, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False
 ) -> OrderedDict[str, Any]:
-    """The fields of a message as plain values: numbers, bools, texts, lists, and dictionaries for nested messages.
+    """Return the fields of a message as plain values: numbers, bools, strings, lists, and dictionaries for nested
+    messages.
+
+    Bytes become strings of the characters with the same codes (rosidl_runtime_py).
 
     Args:
         message: any message.
-        truncate_length: longer texts and lists are cut to this length and end with ``...``.
-        no_arr: whether only the type and length of arrays and sequences are given.
-        no_str: whether only the length of texts is given.
-
-    Bytes are texts of the characters of the same numbers (rosidl_runtime_py).
+        truncate_length: longer strings and lists are cut to this length and end with ``...``.
+        no_arr: whether arrays and sequences are replaced by their type and length.
+        no_str: whether strings are replaced by their length.
     """
     return _dict(message, Abridgement(truncate_length, no_arr, no_str))
 
@@ -68,7 +69,7 @@ def _dict(message: Message, shown: Abridgement) -> OrderedDict[str, Any]:
 
 
 def to_csv(message: Message, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False) -> str:
-    """The values of a message, those of nested messages in their place, with commas between them.
+    """Return the values of a message, including those of nested messages, separated by commas.
 
     Args:
         message: any message.
@@ -87,7 +88,7 @@ def _line(message: Message, shown: Abridgement) -> str:
             words.append(abbreviated(field.type, value))
         else:
             words.append(_csv(value, shown))
-    # A field of no values leaves nothing, not even a comma at the beginning of the line.
+    # A field without values leaves nothing, not even a comma at the beginning of the line.
     text = ""
     for word in words:
         text = f"{text},{word}" if text else word
@@ -95,7 +96,9 @@ def _line(message: Message, shown: Abridgement) -> str:
 
 
 def abbreviated(kind: FieldType, value: Any) -> str:
-    """The type and length of an array or sequence, in place of its values: ``<sequence type: double, length: 12>``."""
+    """Return the type and length of an array or sequence instead of its values: ``<sequence type: double, length:
+    12>``.
+    """
     primitive = PRIMITIVES.get(kind.base)
     name = kind.base if primitive is None else primitive.idl_name
     if kind.container is Container.ARRAY:

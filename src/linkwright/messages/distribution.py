@@ -1,4 +1,4 @@
-"""The distribution of ROS 2 to follow where they differ."""
+"""The distribution of ROS 2 to follow where distributions differ."""
 
 from __future__ import annotations
 
@@ -13,21 +13,22 @@ BEFORE_IRON = ("dashing", "eloquent", "foxy", "galactic", "humble")
 
 
 def is_before_iron(variables: Mapping[str, str] = os.environ) -> bool:
-    """Whether the distribution in ``ROS_DISTRO`` is Humble or an earlier one; without one, it is Humble."""
+    """Return whether ``ROS_DISTRO`` names Humble or an earlier distribution; Humble is assumed if it is not set."""
     distribution = variables.get("ROS_DISTRO", "").lower()
     return not distribution or distribution in BEFORE_IRON
 
 
 def is_before_kilted(variables: Mapping[str, str] = os.environ) -> bool:
-    """Whether the distribution in ``ROS_DISTRO`` is Jazzy or an earlier one; without one, it is Humble."""
+    """Return whether ``ROS_DISTRO`` names Jazzy or an earlier distribution; Humble is assumed if it is not set."""
     return is_before_iron(variables) or variables.get("ROS_DISTRO", "").lower() in ("iron", "jazzy")
 
 
 def checks_fields_as_ros(variables: Mapping[str, str] = os.environ) -> bool:
-    """Whether values of fields are checked as ROS 2 does, which accepts fewer than we do.
+    """Return whether values of fields are checked as in ROS 2, which accepts fewer values than we do.
 
-    They are where the user names Humble or an earlier distribution, and where ``ROS_PYTHON_CHECK_FIELDS`` asks for it,
-    as in the newer ones, which otherwise accept any value.
+    That is the case if the user names Humble or an earlier distribution, or if ``ROS_PYTHON_CHECK_FIELDS`` requests it,
+    as
+    in newer distributions, which otherwise accept any value.
     """
     if variables.get("ROS_PYTHON_CHECK_FIELDS") == "1":
         return True

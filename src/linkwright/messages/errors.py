@@ -1,4 +1,4 @@
-"""The errors of this room."""
+"""The errors of this package."""
 
 from __future__ import annotations
 
@@ -6,29 +6,29 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase
 
 
 class InterfaceNotFoundError(LinkwrightError):
-    """No message, service or action has this name."""
+    """Raised when no message, service or action has a name."""
 
 
 class DefinitionError(LinkwrightError):
-    """An interface file cannot be used; one diagnostic for each mistake in it."""
+    """Raised when an interface file cannot be used; it has one diagnostic for each mistake in the file."""
 
 
 class MessageDataError(LinkwrightError, ValueError):
-    """Bytes are not a message of the type, or a message cannot be written as bytes."""
+    """Raised when bytes are not a message of the type, or a message cannot be serialized."""
 
 
 class FieldValueError(LinkwrightError, ValueError):
-    """Values of YAML do not fit the fields of a message."""
+    """Raised when YAML values do not fit the fields of a message."""
 
 
 class UnknownFieldError(FieldValueError, AttributeError):
-    """A message lacks a field."""
+    """Raised when a message lacks a field."""
 
 
 class WrongValueError(FieldValueError, TypeError):
-    """A field cannot have a value."""
+    """Raised when a field cannot have a value."""
 
 
 def data_error(code: str, message: Phrase) -> MessageDataError:
-    """The error for bytes that cannot be read, or for a message that cannot be written."""
+    """Create the error for bytes that cannot be read, or for a message that cannot be written."""
     return MessageDataError(Diagnostic(code, message))

@@ -1,4 +1,4 @@
-"""Sets the fields of a message from plain data, such as the YAML that ``ros2 topic pub`` is given."""
+"""Set the fields of a message from plain data, such as the YAML given to ``ros2 topic pub``."""
 
 from __future__ import annotations
 
@@ -24,23 +24,26 @@ StampSetter = Callable[[Any], None]
 def set_fields(
     message: Message, values: Mapping[str, Any], *, expand_header_auto: bool = False, expand_time_now: bool = False
 ) -> list[StampSetter]:
-    """Set fields of a message from plain data: numbers, bools, texts, lists, and mappings for nested messages.
+    """Set fields of a message from plain data: numbers, bools, strings, lists, and mappings for nested messages.
 
-    A nested message is replaced: its fields that are not given have their defaults. An integer is accepted for a float,
-    a number for a text, and text for a number if it is one.
+    A nested message is replaced: fields that are not given get their defaults. An integer is accepted for a float, a
+    number
+    for a string, and a string for a number if it contains one.
 
     Args:
         message: the message to change.
         values: field name -> value.
-        expand_header_auto: take ``auto`` for a Header, and ``now`` for its stamp whenever the message is sent.
-        expand_time_now: take ``now`` for a Time, and the time at which the message is sent.
+        expand_header_auto: whether to accept ``auto`` for a Header, whose stamp is then set whenever the message is
+            sent.
+        expand_time_now: whether to accept ``now`` for a Time, which is then set to the time at which the message is
+            sent.
 
     Returns:
-        Functions that set the fields given as ``auto`` or ``now``, each to the Time it is called with.
+        Functions that set the fields given as ``auto`` or ``now`` to the Time that they are called with.
 
     Raises:
-        UnknownFieldError: MSG301, a field that does not exist; also an AttributeError.
-        WrongValueError: MSG302, a value that the field cannot have; also a TypeError.
+        UnknownFieldError: MSG301, a field does not exist; also an AttributeError.
+        WrongValueError: MSG302, a value is invalid for its field; also a TypeError.
     """
     setter = _Setter(expand_header=expand_header_auto, expand_time=expand_time_now)
     setter.fields(message, values, "")
@@ -51,7 +54,7 @@ def set_fields(
 
 
 class _Unfit(Exception):  # noqa: N818 - becomes a diagnostic
-    """A value does not fit a field; the argument describes a value that would."""
+    """Raised when a value does not fit a field; the argument describes a value that would."""
 
 
 class _Setter:
@@ -133,7 +136,7 @@ class _Setter:
         self.fields(message, value, path)
         return message
 
-    # --- what is wrong --------------------------------------------------------------------------------------
+    # --- mistakes -------------------------------------------------------------------------------------------
 
     def _unknown(self, message: Message, name: str, path: str) -> None:
         names = [field.name for field in definition_of(type(message)).fields]
@@ -152,7 +155,7 @@ class _Setter:
 
 
 def _converted(primitive: Primitive, kind: FieldType, value: Any) -> Any:
-    """A value as the field's Python type; ranges and lengths are left to the field's own check."""
+    """Convert a value to the field's Python type; the field itself checks ranges and lengths."""
     if is_scalar(value):
         value = value.item()
     python = primitive.python

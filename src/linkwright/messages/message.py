@@ -1,4 +1,4 @@
-"""The base classes of messages, services and actions, and their bytes: CDR as ROS 2's middlewares send it."""
+"""The base classes of messages, services and actions, and their serialization: CDR as in ROS 2's middlewares."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 def definition_of(message_class: type[Any]) -> Structure:
-    """The definition of a message class: its fields, their types, its constants."""
+    """Return the definition of a message class: its fields, their types, its constants."""
     found: Structure = message_class._definition
     return found
 
 
 class _SlotTypes:
-    """``SLOT_TYPES`` of a class, made on first access."""
+    """The class attribute ``SLOT_TYPES``, whose value is created on first access."""
 
     def __get__(self, instance: object, owner: type[Message]) -> tuple[Any, ...]:
         from linkwright.messages.definitions.slot_types import slot_types
@@ -32,11 +32,12 @@ class _SlotTypes:
 
 
 class Message:
-    """A ROS 2 message: an object with the fields of its definition, checked on assignment as rclpy's are.
+    """A ROS 2 message: an object with the fields of its definition, checked on assignment as in rclpy.
 
     The value of field ``x`` is in the slot ``_x`` as in rosidl_generator_py's classes; the property ``x`` gives access
-    to it. A published message is handed to every subscriber of the process as it is, without a copy: a subscriber reads
-    it and does not change it.
+    to it. A published message is passed to every subscriber in the process without a copy: subscribers may read it but
+    must
+    not change it.
     """
 
     __slots__: tuple[str, ...] = ()
@@ -49,12 +50,12 @@ class Message:
 
     _definition: ClassVar[Structure]
 
-    # What `linkwright.messages.classes` makes classes with; it puts these here.
+    # Functions that create classes; `linkwright.messages.classes` sets them.
     _class_named: ClassVar[Callable[[str], type[Any]]]
     _class_of: ClassVar[Callable[[Structure], type[Any]]]
 
     def _write(self) -> bytes:
-        """The message as CDR. The function for the class is compiled when it is first needed, as that of `_read`."""
+        """Serialize the message to CDR; the function for the class is compiled on first use, as for `_read`."""
         from linkwright.messages.cdr.writer import compile_writer
 
         cls = type(self)
@@ -63,7 +64,7 @@ class Message:
 
     @classmethod
     def _read(cls, data: bytes) -> Any:
-        """The message of bytes with a little-endian header."""
+        """Deserialize a message from bytes with a little-endian header."""
         from linkwright.messages.cdr.reader import compile_reader
 
         reader = compile_reader(cls._definition, cls._class_of)
@@ -72,7 +73,7 @@ class Message:
 
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:
-        """The fields' names and types, such as ``{'position': 'sequence<double>'}``."""
+        """Return the fields' names and types, such as ``{'position': 'sequence<double>'}``."""
         return {field.name: field.type.described() for field in cls._definition.fields}
 
     def __eq__(self, other: object) -> bool:
@@ -95,7 +96,7 @@ class Message:
         for field in self._definition.fields:
             value = getattr(self, field.name)
             text = repr(value)
-            if text.startswith("array('"):  # array('d', [1.0]): the list alone, as rclpy shows it
+            if text.startswith("array('"):  # array('d', [1.0]): show only the list, as rclpy does
                 text = text[len("array('d', ") : -1] if len(value) else "[]"
             values.append(f"{field.name}={text}")
         module = type(self).__module__.rpartition(".")[0]
@@ -106,7 +107,7 @@ class Message:
 
 
 def _remade(type_name: str, values: tuple[Any, ...]) -> Message:
-    """Remake a message from its slots' values: for copies and pickles, without a look for modules by their names."""
+    """Create a message from its slots' values, for copies and pickles, without importing modules by name."""
     cls = Message._class_named(type_name)
     message: Message = object.__new__(cls)
     for slot, value in zip(cls.__slots__, values, strict=True):
@@ -115,7 +116,7 @@ def _remade(type_name: str, values: tuple[Any, ...]) -> Message:
 
 
 class ServiceType:
-    """A service: the classes of its request and its response; there are no objects of it."""
+    """A service: the classes of its request and its response; it cannot be instantiated."""
 
     TYPE_NAME: ClassVar[str]
     Request: ClassVar[type[Any]]
@@ -124,7 +125,7 @@ class ServiceType:
     """The message on the topic of its introspection."""
 
     def __init__(self) -> None:
-        """Services are not made into objects.
+        """Refuse to create an object of a service.
 
         Raises:
             NotImplementedError: always, as in rclpy.
@@ -137,8 +138,8 @@ class ActionImplementation:
 
     Attributes:
         SendGoalService: requests a goal.
-        GetResultService: answers when a goal has ended.
-        FeedbackMessage: feedback, and the id of its goal.
+        GetResultService: responds when a goal has ended.
+        FeedbackMessage: the feedback, and the id of its goal.
         CancelGoalService: ``action_msgs/srv/CancelGoal``.
         GoalStatusMessage: ``action_msgs/msg/GoalStatusArray``.
     """
@@ -151,7 +152,7 @@ class ActionImplementation:
 
 
 class ActionType:
-    """An action: the classes of its goal, result and feedback; there are no objects of it."""
+    """An action: the classes of its goal, result and feedback; it cannot be instantiated."""
 
     TYPE_NAME: ClassVar[str]
     Goal: ClassVar[type[Any]]
@@ -160,7 +161,7 @@ class ActionType:
     Impl: ClassVar[type[ActionImplementation]]
 
     def __init__(self) -> None:
-        """Actions are not made into objects.
+        """Refuse to create an object of an action.
 
         Raises:
             NotImplementedError: always, as in rclpy.
@@ -177,16 +178,16 @@ class _Nanoseconds(Message):
     sec: Any
     nanosec: Any
 
-    if TYPE_CHECKING:  # it is generated
+    if TYPE_CHECKING:  # the constructor is generated
 
         def __init__(self, sec: int = 0, nanosec: int = 0) -> None: ...
 
     @classmethod
     def from_nanoseconds(cls: type[_Self], nanoseconds: int) -> _Self:  # noqa: PYI019 - Python 3.10 has no Self
-        """The message for a count of nanoseconds.
+        """Create the message for a number of nanoseconds.
 
         Raises:
-            AssertionError: the seconds are more than 32 bits can hold.
+            AssertionError: the seconds do not fit into 32 bits.
         """
         return cls(*divmod(nanoseconds, NANOSECONDS_PER_SECOND))
 
@@ -198,13 +199,13 @@ class _Nanoseconds(Message):
 
 
 class TimeValue(_Nanoseconds):
-    """A point in time: seconds since the epoch and nanoseconds on top of them, from 0 to 999 999 999."""
+    """A point in time: seconds since the epoch, plus nanoseconds from 0 to 999 999 999."""
 
     __slots__ = ()
 
 
 class DurationValue(_Nanoseconds):
-    """A span of time: seconds, negative ones too, and nanoseconds on top of them, from 0 to 999 999 999."""
+    """A duration: seconds, which may be negative, plus nanoseconds from 0 to 999 999 999."""
 
     __slots__ = ()
 
@@ -229,11 +230,11 @@ _big_readers: dict[str, Any] = {}
 
 
 def serialize(message: Message) -> bytes:
-    """A message as CDR: header bytes 00 01 00 00, then the fields; nothing is filled up at the end.
+    """Serialize a message to CDR: header bytes 00 01 00 00, then the fields, without padding at the end.
 
     Raises:
-        MessageDataError: MSG202, a value is of the wrong type or out of range (which only happens when the checks on
-            assignment were evaded, as by appending to a list).
+        MessageDataError: MSG202, a value has the wrong type or is out of range (which happens only if the checks on
+            assignment were bypassed, for example by appending to a list).
     """
     try:
         return message._write()
@@ -242,7 +243,7 @@ def serialize(message: Message) -> bytes:
 
 
 def deserialize(data: bytes | bytearray | memoryview, message_class: type[MessageT]) -> MessageT:
-    """The message in some bytes, header included; bytes behind its end are ignored.
+    """Deserialize a message from bytes that include the header; bytes after its end are ignored.
 
     Raises:
         MessageDataError: MSG201, the bytes are not a message of this class.
@@ -306,7 +307,8 @@ def _unwritable(message: object, fault: Exception) -> MessageDataError:
 
 
 def _bad_field(message: Message, path: str) -> str | None:
-    """The field whose value could not be assigned now, and why, in the words of the checks on assignment."""
+    """Return the field whose value could not be assigned now, and the reason in the words of the checks on assignment.
+    """
     for field in definition_of(type(message)).fields:
         here = f"{path}.{field.name}" if path else field.name
         try:

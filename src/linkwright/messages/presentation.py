@@ -1,4 +1,4 @@
-"""Texts of interfaces for display: definitions, and prototypes to fill in."""
+"""Texts of interfaces for display: definitions, and templates to fill in."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from linkwright.messages.yaml_text import to_yaml
 
 
 def definition_text(interface: Any) -> str:
-    """The text of an interface file, as it is in the workspace; of one that comes with us, with comments of our own.
+    """Return the text of an interface file; the files that come with Linkwright have our own comments.
 
     Args:
         interface: a class, or a type name.
 
     Raises:
-        InterfaceNotFoundError: there is none of this name.
+        InterfaceNotFoundError: there is no interface with this name.
     """
     return LIBRARY.source(interface if isinstance(interface, str) else interface.TYPE_NAME).text
 
 
 def prototype(interface: Any, *, flow_style: bool = False) -> str:
-    """The YAML of a message with all its defaults: the message itself, a service's request, or an action's goal.
+    """Return the default values of a message, of a service's request, or of an action's goal, as YAML.
 
     Args:
         interface: a class, or a type name.
         flow_style: as in `to_yaml`.
 
     Raises:
-        InterfaceNotFoundError: there is none of this name.
+        InterfaceNotFoundError: there is no interface with this name.
     """
     cls = get_interface(interface) if isinstance(interface, str) else interface
     if issubclass(cls, ServiceType):
@@ -41,8 +41,8 @@ def prototype(interface: Any, *, flow_style: bool = False) -> str:
 
 
 def interface_names(kind: str) -> list[str]:
-    """The type names of all messages (``msg``), services (``srv``) or actions (``action``) that are known, sorted.
+    """Return the type names of all known messages (``msg``), services (``srv``) or actions (``action``), sorted.
 
-    Those are the ones that come with Linkwright and those of the packages that the finder in force finds.
+    They are the interfaces that come with Linkwright and those of the packages that the current finder finds.
     """
     return LIBRARY.names(kind)

@@ -1,6 +1,6 @@
-"""The definition of a message type together with those of the types in it.
+"""The definition of a message type, followed by the definitions of the types in it.
 
-The form is MCAP's ``ros2msg`` schema encoding, which is also that of rosbag2's SQLite files and of Foxglove.
+The form is MCAP's ``ros2msg`` schema encoding, which rosbag2's SQLite files and Foxglove use too.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ _SEPARATOR = "=" * 80
 
 
 def schema_of(type_name: str) -> str:
-    """The definitions of a type and of all types in it.
+    """Return the definitions of a type and of all types in it.
 
     Args:
-        type_name: such as ``sensor_msgs/msg/JointState``, or that of a service's events.
+        type_name: the type, such as ``sensor_msgs/msg/JointState``, or the type of a service's events.
 
     Raises:
         LinkwrightError: MSG101, the type is not known.
@@ -35,7 +35,7 @@ def schema_of(type_name: str) -> str:
 
 
 def _text(type_name: str) -> str:
-    """The text of a message; for a request or response, which no file defines, a text with its fields."""
+    """Return the text of a message; for a request or response, which no file defines, generate it from the fields."""
     if "/msg/" in type_name:
         return definition_text(type_name)
     lines = []
@@ -43,7 +43,7 @@ def _text(type_name: str) -> str:
         base = field.type.base
         package, _, name = base.rpartition("/")
         spelled = field.type.spelled()
-        if "/srv" in package:  # names of messages have two parts, so that the kind would be lost
+        if "/srv" in package:  # names of messages have two parts here, so the kind would be lost
             spelled = spelled.replace(f"{package.partition('/')[0]}/{name}", base, 1)
         lines.append(f"{spelled} {field.name}")
     return "\n".join(lines)

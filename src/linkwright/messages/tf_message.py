@@ -1,14 +1,13 @@
-"""tf2_msgs/msg/TFMessage: many transforms at once.
+"""The message tf2_msgs/msg/TFMessage, optimised for many transforms.
 
 Five hundred joints at 30 Hz are 15 000 transforms a second. As message objects they would cost more than everything
-else in the process together, so a `TFMessage` may carry a `TransformBatch`, the same facts as names and one array, or
-the bytes it was received as, and makes the objects only for a reader who asks for them.
+else in the process together. Therefore a `TFMessage` may contain a `TransformBatch`, the same data as names and one
+array, or the bytes that were received; it creates the objects only when they are requested.
 
-Layouts of transforms between the same frames, whose bytes differ in nothing but stamps and numbers.
-
-A `TransformLayout` knows where those stand. So a message is written by filling a template, and one that was received
-is recognised by comparing the rest with the template; in both directions the time for a transform is a few
-nanoseconds, and no object is made for it.
+The bytes of messages with transforms between the same frames differ only in stamps and numbers. A `TransformLayout`
+knows where these are. So a message is written by filling in a template, and a received message is recognised by
+comparing its other bytes with the template. In both directions a transform takes a few nanoseconds, and no object is
+created for it.
 """
 
 from __future__ import annotations
@@ -38,11 +37,11 @@ _by_length: dict[int, list[TransformLayout]] = {}
 
 
 class TransformLayout:
-    """The positions of stamps and poses in a TFMessage of certain frames.
+    """The positions of stamps and poses in a TFMessage with given frames.
 
     Args:
-        parents: the frame each transform is given in.
-        children: the frame each transform places.
+        parents: the parent frame of each transform.
+        children: the child frame of each transform.
     """
 
     def __init__(self, parents: tuple[str, ...], children: tuple[str, ...]) -> None:
@@ -62,7 +61,7 @@ class TransformLayout:
             pieces.append(bytes(8) + texts + bytes(padding + 56))
             masks.append(bytes(8) + _mask(parent) + _mask(child) + bytes(padding + 56))
             at += padding + 56
-        # The number of transforms alone is four bytes; any transform ends at a multiple of eight.
+        # The number of transforms takes four bytes; each transform ends at a multiple of eight.
         self.length = len(_HEADER) + at
         self._words = np.frombuffer(b"".join(pieces) + bytes(-at % 8), np.uint64)
         self._mask = np.frombuffer(b"".join(masks) + bytes(-at % 8), np.uint64)
@@ -70,14 +69,14 @@ class TransformLayout:
         self._poses = np.array(poses, dtype=np.intp)[:, None] + np.arange(7)
 
     def with_one_stamp(self, stamp_ns: int, poses: NDArray[np.float64]) -> bytes:
-        """The message of these poses with one stamp for all.
+        """Return the message with these poses and one stamp for all.
 
         Args:
-            stamp_ns: nanoseconds since the epoch.
+            stamp_ns: the stamp, in nanoseconds since the epoch.
             poses: array, shape (n, 7), of x y z qx qy qz qw.
 
         Raises:
-            OverflowError: the seconds are more than 32 bits can hold.
+            OverflowError: the seconds do not fit into 32 bits.
         """
         sec, nanosec = divmod(stamp_ns, NANOSECONDS_PER_SECOND)
         if not -(1 << 31) <= sec < 1 << 31:
@@ -89,7 +88,7 @@ class TransformLayout:
         return self._finished(words, poses)
 
     def with_stamps(self, stamps: Sequence[tuple[int, int]], poses: NDArray[np.float64]) -> bytes:
-        """The message of these poses, each with its own stamp: seconds and nanoseconds."""
+        """Return the message with these poses, each with its own stamp in seconds and nanoseconds."""
         words = self._words.copy()
         words.view(np.uint32)[self._stamps] = np.array([sec for sec, _ in stamps], np.int32).view(np.uint32)
         words.view(np.uint32)[self._stamps + 1] = np.array([nanosec for _, nanosec in stamps], np.uint32)
@@ -100,7 +99,7 @@ class TransformLayout:
         return _HEADER + words.tobytes()[: self.length - len(_HEADER)]
 
     def register(self) -> None:
-        """Register this layout for messages that are received."""
+        """Register this layout, so that received messages are compared with it."""
         same_length = _by_length.setdefault(self.length, [])
         if self not in same_length:
             if len(_by_length) > _MOST_KEPT:
@@ -110,16 +109,16 @@ class TransformLayout:
             _by_length[self.length] = same_length
 
     def fits(self, words: NDArray[np.uint64]) -> bool:
-        """Whether a message's words, without its header, are of these frames; stamps and numbers may be any."""
+        """Return whether a message's words, without its header, have these frames, with any stamps and numbers."""
         return not ((words ^ self._words) & self._mask).any()
 
     def poses_in(self, words: NDArray[np.uint64]) -> NDArray[np.float64]:
-        """The poses in a message, shape (n, 7)."""
+        """Return the poses in a message, shape (n, 7)."""
         poses: NDArray[np.float64] = words.view(np.float64)[self._poses]
         return poses
 
     def stamps_in(self, words: NDArray[np.uint64]) -> NDArray[np.int64]:
-        """The stamps in a message, nanoseconds since the epoch."""
+        """Return the stamps in a message, in nanoseconds since the epoch."""
         stamps = words.view(np.int32)[self._stamps].astype(np.int64)
         stamps *= NANOSECONDS_PER_SECOND
         stamps += words.view(np.uint32)[self._stamps + 1]
@@ -127,11 +126,11 @@ class TransformLayout:
 
 
 class ReceivedTransforms(NamedTuple):
-    """A message that was received, and the layout that it has.
+    """A received message and its layout.
 
     Attributes:
         layout: the positions of the values.
-        data: the message, header included.
+        data: the message, including the header.
         words: the message without its header.
     """
 
@@ -140,21 +139,21 @@ class ReceivedTransforms(NamedTuple):
     words: NDArray[np.uint64]
 
     def poses(self) -> NDArray[np.float64]:
-        """Array, shape (n, 7), of x y z qx qy qz qw."""
+        """Return the poses: array, shape (n, 7), of x y z qx qy qz qw."""
         return self.layout.poses_in(self.words)
 
     def stamps_ns(self) -> NDArray[np.int64]:
-        """The stamp of each transform, nanoseconds since the epoch."""
+        """Return the stamp of each transform, in nanoseconds since the epoch."""
         return self.layout.stamps_in(self.words)
 
     def newest_ns(self) -> int:
-        """The newest stamp, in nanoseconds since the epoch."""
+        """Return the newest stamp, in nanoseconds since the epoch."""
         stamps = self.stamps_ns()
         return int(stamps.max()) if len(stamps) else 0
 
 
 def layout_for(parents: tuple[str, ...], children: tuple[str, ...]) -> TransformLayout:
-    """The layout of a message with these frames; cached."""
+    """Return the layout of a message with these frames; cached."""
     key = (parents, children)
     layout = _layouts.get(key)
     if layout is None:
@@ -165,7 +164,7 @@ def layout_for(parents: tuple[str, ...], children: tuple[str, ...]) -> Transform
 
 
 def matching_layout(data: bytes) -> ReceivedTransforms | None:
-    """The layout, of those remembered, that a received message has; None when it has none of them.
+    """Return a received message with the registered layout that it matches; None if it matches none.
 
     Args:
         data: a message with a little-endian header.
@@ -181,7 +180,7 @@ def matching_layout(data: bytes) -> ReceivedTransforms | None:
 
 
 def _mask(text: str) -> bytes:
-    """Ones for the length and the text, zeros for the padding, which may have any value."""
+    """Return a mask with ones for the length and the string, and zeros for the padding, which may have any value."""
     length = 4 + len(text.encode()) + 1
     return b"\xff" * length + bytes(-length % 4)
 
@@ -195,16 +194,17 @@ _SHORT = 600
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TransformBatch:
-    """Transforms that hold at one moment.
+    """Transforms that are valid at one moment.
+
+    Publishers that send the same frames repeatedly should pass the same two tuples each time, because receivers cache
+    their
+    results for them.
 
     Attributes:
-        parents: the frame each transform is given in.
-        children: the frame each transform places.
-        stamp_ns: the moment, nanoseconds since the epoch.
+        parents: the parent frame of each transform.
+        children: the child frame of each transform.
+        stamp_ns: the moment, in nanoseconds since the epoch.
         poses: array, shape (n, 7), of x y z (metres) and qx qy qz qw: each child in its parent.
-
-    Publishers that send the same frames again and again pass the same two tuples each time: receivers keep what they
-    worked out for them.
     """
 
     parents: tuple[str, ...]
@@ -224,7 +224,7 @@ class TransformBatch:
 
     @classmethod
     def from_messages(cls, transforms: Iterable[TransformStamped]) -> TransformBatch:
-        """The same transforms as one batch, stamped with the newest of their stamps."""
+        """Return a batch of the same transforms, stamped with the newest of their stamps."""
         transforms = list(transforms)
         return cls(
             parents=tuple(transform.header.frame_id for transform in transforms),
@@ -234,7 +234,7 @@ class TransformBatch:
         )
 
     def to_messages(self) -> list[TransformStamped]:
-        """The transforms as message objects."""
+        """Return the transforms as message objects."""
         stamp = Time.from_nanoseconds(self.stamp_ns)
         return [
             TransformStamped(
@@ -247,14 +247,14 @@ class TransformBatch:
 
 
 class TFMessage(Message):
-    """Transforms, held as message objects, as a batch or as they were received; other forms are made on demand.
+    """Transforms, stored as message objects, as a batch or as received bytes; other forms are created on demand.
 
     Args:
-        transforms: message objects; none when left out.
+        transforms: message objects; none if omitted.
         batch: the transforms as arrays, instead of objects.
     """
 
-    __module__ = "tf2_msgs.msg._tf_message"  # what its repr and rclpy's users take it for
+    __module__ = "tf2_msgs.msg._tf_message"  # the module that its repr and rclpy's users expect
 
     __slots__ = ("_batch", "_list", "_received")
 
@@ -278,8 +278,9 @@ class TFMessage(Message):
     def transforms(self) -> list[TransformStamped]:
         """The transforms as message objects.
 
-        The list of a message made from objects may be changed until it is published, that of one made from a batch
-        never.
+        The list may be changed until the message is published if the message was made from objects, and never if it was
+        made
+        from a batch.
         """
         if self._list is None:
             if self._received is not None:
@@ -302,11 +303,11 @@ class TFMessage(Message):
         self._batch = None
         self._received = None
 
-    _transforms = transforms  # where rclpy's class has its slot
+    _transforms = transforms  # the name of the slot in rclpy's class
 
     @property
     def batch(self) -> TransformBatch:
-        """The transforms as arrays: the batch that the message was made of, or one made of its transforms."""
+        """The transforms as arrays: the batch given to the message, or one created from its transforms."""
         if self._batch is not None:
             return self._batch
         if self._received is not None:
@@ -319,9 +320,10 @@ class TFMessage(Message):
         return TransformBatch.from_messages(self._list)
 
     def columns(self) -> tuple[tuple[str, ...], tuple[str, ...], list[int], NDArray[np.float64]] | None:
-        """Parents, children, stamps (nanoseconds since the epoch) and poses, shape (n, 7), of the transforms.
+        """Return the parents, children, stamps (nanoseconds since the epoch) and poses, shape (n, 7), of the
+        transforms.
 
-        None for a message that holds objects: these are read faster as they are.
+        None is returned for a message that stores objects, because reading the objects directly is faster.
         """
         if self._received is not None:
             layout = self._received.layout
@@ -365,7 +367,7 @@ class TFMessage(Message):
         return message
 
 
-# What rclpy's users find there; the slots above are fixed by now.
+# The value that rclpy's users find; the slots above are already fixed by now.
 TFMessage.__slots__ = ("_transforms",)  # type: ignore[assignment]  # of another length
 
 add_class(TFMessage)
@@ -381,7 +383,7 @@ def _poses(transforms: list[Any]) -> NDArray[np.float64]:
 
 @cache
 def _ordinary_writer() -> Callable[[Message], bytes]:
-    """The function that writes the transforms one by one, compiled from the definition on first use."""
+    """Return the function that writes the transforms one by one, compiled from the definition on first use."""
     from linkwright.messages.cdr.writer import compile_writer
 
     return compile_writer(definition_of(TFMessage))
@@ -389,7 +391,7 @@ def _ordinary_writer() -> Callable[[Message], bytes]:
 
 @cache
 def _ordinary_reader() -> Callable[[bytes], TFMessage]:
-    """The function that reads the transforms one by one, compiled from the definition on first use."""
+    """Return the function that reads the transforms one by one, compiled from the definition on first use."""
     from linkwright.messages.cdr.reader import compile_reader
 
     return compile_reader(definition_of(TFMessage), class_of)

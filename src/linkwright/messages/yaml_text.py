@@ -1,7 +1,9 @@
-"""Messages as YAML, character for character as PyYAML writes them and ``ros2 topic echo`` shows.
+"""Write messages as YAML, character for character as PyYAML writes them and ``ros2 topic echo`` shows them.
 
-PyYAML takes milliseconds for a message of a few hundred numbers, too long to follow /tf. So the lines are written here,
-from a plan for each class; only for texts, whose quoting is an art, PyYAML is asked, and its answers are remembered.
+PyYAML takes milliseconds for a message of a few hundred numbers, too slow to follow /tf. Therefore the lines are
+written
+here, from a plan for each class. PyYAML is used only for strings, whose quoting is complicated, and its results are
+cached.
 """
 
 from __future__ import annotations
@@ -30,13 +32,13 @@ def to_yaml(
     no_str: bool = False,
     flow_style: bool = False,
 ) -> str:
-    """A message as YAML.
+    """Return a message as YAML.
 
     Args:
         message: any message.
-        truncate_length: longer texts and lists are cut to this length and end with ``...``.
-        no_arr: whether only the type and length of arrays and sequences are given.
-        no_str: whether only the length of texts is given.
+        truncate_length: longer strings and lists are cut to this length and end with ``...``.
+        no_arr: whether arrays and sequences are replaced by their type and length.
+        no_str: whether strings are replaced by their length.
         flow_style: whether lists are in brackets, and their messages in braces.
     """
     if flow_style:
@@ -47,14 +49,14 @@ def to_yaml(
 
 
 class _Writer:
-    """Writes one message. A path is the containers of a value, ``m`` for mappings and ``s`` for lists."""
+    """Writes one message; a path gives the containers of a value, ``m`` for mappings and ``s`` for lists."""
 
     def __init__(self, shown: Abridgement, lines: list[str]) -> None:
         self._shown = shown
         self._lines = lines
 
     def message(self, message: Message, indent: str, way: tuple[str, ...]) -> None:
-        """The lines of a message's fields; the first is indented too."""
+        """Write the lines of a message's fields, all of them indented."""
         way = (*way, "m")
         lines, append = self._lines, self._lines.append
         for key, slot, kind, number in _plan(type(message)):
@@ -122,7 +124,7 @@ _plans: dict[str, list[_Step]] = {}
 
 
 def _plan(cls: type[Message]) -> list[_Step]:
-    """The way to write the fields of a class."""
+    """Return the steps that write the fields of a class."""
     plan = _plans.get(cls.TYPE_NAME)
     if plan is None:
         plan = _plans[cls.TYPE_NAME] = [_step(field) for field in definition_of(cls).fields]
@@ -135,7 +137,7 @@ def _step(field: Field) -> _Step:
 
 
 def _number_text(kind: FieldType) -> Callable[[Any], str] | None:
-    """The function that writes one value of a type without further tests; None where there is none."""
+    """Return the function that formats a value of a type without further tests; None if there is none."""
     primitive = kind.primitive
     writers: dict[type, Callable[[Any], str]] = {int: str, float: _float_text, bool: _bool_text}
     return None if primitive is None else writers.get(primitive.python)
@@ -149,18 +151,18 @@ def _float_text(value: float) -> str:
     if not isfinite(value):
         return ".nan" if value != value else ".inf" if value > 0 else "-.inf"
     text = repr(float(value))
-    # YAML 1.1 requires a point in a number with an exponent.
+    # YAML 1.1 requires a decimal point in a number with an exponent.
     return text.replace("e", ".0e", 1) if "e" in text and "." not in text else text
 
 
 @lru_cache(maxsize=8192)
 def _scalar(text: str) -> str:
-    """A text of one line as a value or a key."""
+    """Format a single-line string as a value or a key."""
     return _dumped({"k": text}, flow_style=False)[len("k: ") : -1]
 
 
 def _placed_scalar(text: str, way: tuple[str, ...]) -> str:
-    """A text of several lines: they are indented according to the place, so PyYAML is shown one like it."""
+    """Format a multi-line string; its indentation depends on its place, so PyYAML formats it in a similar place."""
     marker = _dumped(_wrapped("X", way), flow_style=False)
     return _dumped(_wrapped(text, way), flow_style=False)[marker.index("X") : -1]
 
@@ -173,10 +175,12 @@ def _wrapped(text: str, way: tuple[str, ...]) -> Any:
 
 
 def _dumped(data: Any, *, flow_style: bool) -> str:
-    import yaml  # here, because a launch without an echo has no use for it
+    import yaml  # imported here because a launch without an echo does not need it
 
     class Dumper(yaml.SafeDumper):
-        """PyYAML's, but a message's fields are never in braces, whatever the style of lists (rosidl_runtime_py)."""
+        """PyYAML's dumper, except that a message's fields are never in braces, whatever the style of lists
+        (rosidl_runtime_py).
+        """
 
         def represent_fields(self, data: OrderedDict[str, Any]) -> yaml.MappingNode:
             items = [(self.represent_data(key), self.represent_data(value)) for key, value in data.items()]

@@ -1,1 +1,1 @@
-"""CDR: the layout of a structure's bytes, and the functions that read and write them."""
+"""CDR: the byte layout of structures, and the functions that read and write them."""

@@ -1,8 +1,8 @@
-"""Layout of CDR that reader and writer share: alignment as far as it is known beforehand, sizes, runs of fields.
+"""The layout of CDR, for the reader and the writer: alignment as far as it is known in advance, sizes, runs of fields.
 
-CDR (OMG, classic, "XCDR1") puts each primitive at a multiple of its size, counted from behind the four header bytes.
-Behind text or a sequence the place is known only in part, such as "a multiple of four": generated code then pads where
-it must, and nowhere else.
+CDR (OMG, classic, "XCDR1") aligns each primitive to a multiple of its size, counted from the end of the four header
+bytes. After a string or a sequence, the position is known only in part, such as "a multiple of four": generated code
+then computes the padding only where it may be needed.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ class Place(NamedTuple):
     rest: int
 
     def after(self, size: int) -> Place:
-        """The place so many bytes further."""
+        """Return the position a number of bytes further on."""
         return Place(self.modulus, (self.rest + size) % self.modulus)
 
     def padding(self, size: int) -> int | None:
-        """Bytes up to the next multiple of a size; None when that is not known beforehand."""
+        """Return the number of bytes up to the next multiple of a size; None if it is not known in advance."""
         return (-self.rest) % size if self.modulus >= size else None
 
     def met(self, other: Place) -> Place:
-        """The knowledge that holds at both places."""
+        """Return what is known about the position if it may be either this place or another."""
         modulus = min(self.modulus, other.modulus)
         while (self.rest - other.rest) % modulus:
             modulus //= 2
@@ -46,12 +46,12 @@ ANYWHERE = Place(1, 0)
 
 
 class Facts(NamedTuple):
-    """Facts on a structure.
+    """Properties of the layout of a structure.
 
     Attributes:
-        least: the fewest bytes it takes on the wire, padding left out.
-        leaves: how many primitives, texts and sequences it has, those of nested structures included.
-        first: the alignment that its first primitive asks for.
+        least: the minimum number of bytes on the wire, without padding.
+        leaves: the number of primitives, strings and sequences, including those of nested structures.
+        first: the alignment that its first primitive requires.
     """
 
     least: int
@@ -63,7 +63,7 @@ _facts: dict[str, Facts] = {}
 
 
 def facts(structure: Structure) -> Facts:
-    """The facts on a structure."""
+    """Return the layout properties of a structure."""
     found = _facts.get(structure.type_name)
     if found is None:
         parts = [field_facts(field) for field in structure.wire_fields]
@@ -73,7 +73,7 @@ def facts(structure: Structure) -> Facts:
 
 
 def field_facts(field: Field) -> Facts:
-    """The facts on a field."""
+    """Return the layout properties of a field."""
     kind = field.type
     primitive = PRIMITIVES.get(kind.base)
     if kind.container is Container.SEQUENCE:

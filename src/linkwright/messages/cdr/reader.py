@@ -1,8 +1,9 @@
-"""Compiles, for a structure, the function that reads it from CDR.
+"""Compile, for a structure, the function that reads it from CDR.
 
-The function unpacks runs of fixed fields, through nested structures, with one `struct` call each, straight into the
-slots of the objects; no check of an assignment is made again. It trusts no length: none makes it read or reserve more
-than there is, and whatever it raises for bad data is one of the errors in `linkwright.messages.cdr.values.READ_FAULTS`.
+The function unpacks runs of fixed fields, including those of nested structures, with one `struct` call each, directly
+into the slots of the objects; the checks on assignment are not repeated. It trusts no length in the data: none can make
+it read or reserve more than the data contain. All errors that it raises for bad data are listed in
+`linkwright.messages.cdr.values.READ_FAULTS`.
 """
 
 from __future__ import annotations
@@ -41,11 +42,11 @@ Order = Literal["<", ">"]
 
 
 def compile_reader(structure: Structure, class_of: ClassOf, order: Order = "<") -> Callable[[bytes], Any]:
-    """Compile the function that makes a message of bytes, header included.
+    """Compile the function that creates a message from bytes, including the header.
 
     Args:
         structure: the structure to read.
-        class_of: gives the class of each structure.
+        class_of: returns the class of a structure.
         order: ``<`` for little-endian data, ``>`` for big-endian.
     """
     code = _ReaderCode(START, class_of, order, known=4)
@@ -58,7 +59,7 @@ def compile_reader(structure: Structure, class_of: ClassOf, order: Order = "<") 
 
 
 def _compile_part(structure: Structure, class_of: ClassOf, order: Order) -> Callable[..., Any]:
-    """Compile the function that reads a nested structure at a place, and returns it and its end."""
+    """Compile the function that reads a nested structure at an offset, and returns it and its end."""
     found = _parts.get((structure.type_name, order))
     if found is None:
         code = _ReaderCode(ANYWHERE, class_of, order, known=None)
@@ -71,7 +72,10 @@ def _compile_part(structure: Structure, class_of: ClassOf, order: Order) -> Call
 
 
 class _ReaderCode:
-    """The code while it is written. `p` is the place in the data, header included, `e` the end of the data."""
+    """The code of a reader while it is generated.
+
+    In the code, `p` is the position in the data, including the header, and `e` is the end of the data.
+    """
 
     def __init__(self, place: Place, class_of: ClassOf, order: Order, known: int | None) -> None:
         self.place = place
@@ -97,7 +101,7 @@ class _ReaderCode:
     # --- structures and fields ------------------------------------------------------------------------------
 
     def made(self, structure: Structure) -> str:
-        """Make an object of the structure's class, in a variable."""
+        """Generate the creation of an object of the structure's class; return its variable."""
         name = f"m{next(self._names)}"
         self._line(f"{name} = new({self._given(self._class_of(structure), 'C')})")
         return name
@@ -226,7 +230,7 @@ class _ReaderCode:
         self.place = ANYWHERE
 
     def _repeated(self, field: Field, target: str, length: str) -> None:
-        """Write a loop; its beginning has the alignment that is known for the first and all further rounds."""
+        """Generate a loop, whose start has the alignment that holds for the first and all further iterations."""
         one = FieldType(field.type.base, field.type.string_bound)
         self._move_on()
         values, value = f"l{next(self._names)}", f"x{next(self._names)}"
@@ -249,7 +253,7 @@ class _ReaderCode:
     # --- places and runs ------------------------------------------------------------------------------------
 
     def _length(self) -> str:
-        """Read the length of a text or a sequence; `p` is behind it then."""
+        """Generate the reading of the length of a string or a sequence; `p` is after it then."""
         name = f"n{next(self._names)}"
         self._primitive("I", 4, name)
         self._move_on()
@@ -274,7 +278,7 @@ class _ReaderCode:
             self.place = self.place.after(padding)
 
     def end_run(self) -> None:
-        """Unpack the collected fields."""
+        """Generate the unpacking of the collected fields."""
         if not self._run:
             return
         form = struct.Struct(self._order + "".join(code for code, _ in self._run))
@@ -301,7 +305,7 @@ class _ReaderCode:
         return "p" if self._known is None else str(self._known)
 
     def _move_on(self) -> None:
-        """End the run; from here on the position is in `p` alone."""
+        """End the run; from here on, only `p` holds the position."""
         self.end_run()
         if self._known is not None:
             self._line(f"p = {self._known}")

@@ -1,7 +1,8 @@
-"""Run-time support of generated CDR code: texts and sequences of texts, and the errors of bad data.
+"""Run-time support for generated CDR code: strings, sequences of strings, and the errors for bad data.
 
-Publishers send the same names again and again. So the bytes of a short text, and of a list of texts, are remembered
-when they were written, and the list of texts when its bytes were read: the names of twelve joints cost one comparison.
+Publishers send the same names repeatedly. Therefore the bytes of short strings, and of lists of strings, are cached
+when they are written, and lists of strings are cached by their bytes when they are read: the names of twelve joints
+cost one comparison.
 """
 
 from __future__ import annotations
@@ -27,11 +28,11 @@ READ_FAULTS = (struct.error, IndexError, ValueError)
 
 
 class DataFaultError(ValueError):
-    """Bytes are not a message; the text is the reason. Never leaves this room."""
+    """Raised when bytes are not a message; its text is the reason. It never leaves this package."""
 
 
 class Texts(dict[str, bytes]):
-    """Text -> length, UTF-8, NUL, and zeros up to a multiple of `alignment`. Made and kept on first use."""
+    """A cache of encoded strings: length, UTF-8, NUL, and zeros up to a multiple of `alignment`."""
 
     def __init__(self, alignment: int) -> None:
         super().__init__()
@@ -49,7 +50,9 @@ class Texts(dict[str, bytes]):
 
 
 class TextLists(dict[tuple[str, ...], bytes]):
-    """Texts -> their number, then each as in `Texts`; the last is filled up only to `alignment`."""
+    """A cache of encoded lists of strings: their number, then each as in `Texts`; only the last is padded to
+    `alignment`.
+    """
 
     def __init__(self, alignment: int) -> None:
         super().__init__()
@@ -76,15 +79,15 @@ _blocks: dict[bytes, tuple[bytes, list[str], int]] = {}
 
 
 def read_texts(data: bytes, at: int, count: int) -> tuple[list[str], int]:
-    """A list of texts.
+    """Read a list of strings.
 
     Args:
         data: the message.
-        at: where the first text's length stands, a multiple of four.
-        count: how many there are.
+        at: the offset of the first string's length, a multiple of four.
+        count: the number of strings.
 
     Returns:
-        The texts, and where they end.
+        The strings, and the offset of their end.
     """
     key = data[at - 4 : at + _KEY]
     kept = _blocks.get(key)
@@ -115,7 +118,7 @@ def read_texts(data: bytes, at: int, count: int) -> tuple[list[str], int]:
 
 
 def read_numbers(code: str, data: bytes, start: int, end: int) -> array[Any]:
-    """The numbers in a part of a message; checks that the message is that long."""
+    """Return the numbers in a range of a message; check that the message is long enough."""
     if end > len(data):
         truncated()
     if end - start <= _COPIED_AT_ONCE:
@@ -126,7 +129,7 @@ def read_numbers(code: str, data: bytes, start: int, end: int) -> array[Any]:
 
 
 def read_bools(data: bytes, start: int, end: int) -> list[bool]:
-    """The bools in a part of a message; checks that the message is that long."""
+    """Return the bools in a range of a message; check that the message is long enough."""
     raw = data[start:end]
     if len(raw) < end - start:
         truncated()
@@ -136,16 +139,20 @@ def read_bools(data: bytes, start: int, end: int) -> list[bool]:
 
 
 def read_bytes(data: bytes, start: int, end: int) -> list[bytes]:
-    """The single bytes in a part of a message; checks that the message is that long."""
+    """Return the single bytes in a range of a message; check that the message is long enough."""
     if end > len(data):
         truncated()
     return [data[at : at + 1] for at in range(start, end)]
 
 
 def read_wide_text(data: bytes, at: int, count: int, order: str) -> tuple[str, int]:
-    """A wide text of so many UTF-16 units, and where it ends. Each has four bytes, and there is no terminator.
+    """Read a wide string with a number of UTF-16 units, each in four bytes and without a terminator.
 
-    So rosidl_typesupport_fastrtps writes it, for Fast DDS and Zenoh, up to Kilted, and rmw_cyclonedds_cpp after it.
+    This is the format of rosidl_typesupport_fastrtps, for Fast DDS and Zenoh, up to Kilted; rmw_cyclonedds_cpp adopted
+    it.
+
+    Returns:
+        The string, and the offset of its end.
     """
     end = at + count * 4
     if end > len(data):
@@ -162,13 +169,13 @@ def read_wide_text(data: bytes, at: int, count: int, order: str) -> tuple[str, i
 
 
 def write_wide_text(text: str) -> bytes:
-    """A wide text: the number of its UTF-16 units, and these in four bytes each."""
+    """Encode a wide string: the number of its UTF-16 units, and each unit in four bytes."""
     units = array("I", array("H", text.encode("utf-16-le")))
     return _LENGTH.pack(len(units)) + units.tobytes()
 
 
 def truncated() -> None:
-    """The error for data that end before the message does, or for an impossible length in them."""
+    """Raise the error for truncated data, or for an impossible length in the data."""
     raise DataFaultError(phrase("the data ends in the middle of the message, or a length in it is wrong"))
 
 
@@ -183,11 +190,11 @@ def bad_bool(value: int) -> None:
 
 
 def too_long(name: str, bound: int) -> None:
-    """The error for more values than a bound allows."""
+    """Raise the error for more values than a bound allows."""
     raise DataFaultError(phrase("'{name}' is longer than its bound of {bound}", name=name, bound=bound))
 
 
 def check_bounds(name: str, texts: list[str], bound: int) -> None:
-    """Check that none of the texts is longer than a bound."""
+    """Check that no string is longer than a bound."""
     if any(len(text) > bound for text in texts):
         too_long(name, bound)

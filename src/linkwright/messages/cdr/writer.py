@@ -1,7 +1,8 @@
-"""Compiles, for a structure, the function that writes it as CDR.
+"""Compile, for a structure, the function that writes it as CDR.
 
-The function packs runs of fixed fields, through nested structures, with one `struct` call each, takes the pieces of
-texts from a memory of them, uses arrays as they are, and joins everything in the end: nothing is copied twice.
+The function packs runs of fixed fields, including those of nested structures, with one `struct` call each, takes
+encoded
+strings from a cache, uses arrays without copying them, and joins all parts at the end: nothing is copied twice.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ _HEADER = 0x100
 
 
 class LengthFaultError(ValueError):
-    """A field that holds more or fewer values than its definition allows."""
+    """Raised when a field has more or fewer values than its definition allows."""
 
 
 def _check_length(name: str, value: Any, size: int) -> None:
@@ -51,7 +52,7 @@ _parts: dict[str, Callable[..., int]] = {}
 
 
 def compile_writer(structure: Structure) -> Callable[[Any], bytes]:
-    """Compile the function that turns a message of this structure into bytes."""
+    """Compile the function that serializes a message of a structure."""
     code = _WriterCode(START)
     code.pack("I", str(_HEADER), place=START)
     code.structure(structure, "m", 0)
@@ -61,7 +62,7 @@ def compile_writer(structure: Structure) -> Callable[[Any], bytes]:
 
 
 def _compile_part(structure: Structure) -> Callable[..., int]:
-    """Compile the function that appends the pieces of a nested structure to a list and returns their end."""
+    """Compile the function that appends the bytes of a nested structure to a list of parts and returns their end."""
     found = _parts.get(structure.type_name)
     if found is None:
         code = _WriterCode(ANYWHERE)
@@ -75,7 +76,7 @@ def _compile_part(structure: Structure) -> Callable[..., int]:
 
 
 class _WriterCode:
-    """The code while it is written."""
+    """The code of a writer while it is generated."""
 
     def __init__(self, place: Place) -> None:
         self.place = place
@@ -114,12 +115,12 @@ class _WriterCode:
     # --- structures and fields ------------------------------------------------------------------------------
 
     def structure(self, structure: Structure, source: str, following: int) -> None:
-        """Write the fields of a structure.
+        """Generate the writing of a structure's fields.
 
         Args:
             structure: the structure to write.
             source: the expression for it.
-            following: the alignment of the data behind it; 0 when that is not known.
+            following: the alignment of the data after it; 0 if it is not known.
         """
         fields = structure.wire_fields
         for number, field in enumerate(fields):
@@ -197,7 +198,7 @@ class _WriterCode:
         self.pack("I", length)
         self._end_run()
         if primitive.size == 8:
-            # Behind the length of an empty sequence there is no padding.
+            # There is no padding after the length of an empty sequence.
             if self.place.padding(8) is None:
                 self.sync()
                 self.needs_position = True
@@ -230,7 +231,7 @@ class _WriterCode:
         self._piece(self._named(piece), ANYWHERE)
 
     def _repeated(self, values: str, write: Callable[[str], None]) -> None:
-        """Write a loop; its beginning has the alignment that is known for the first and all further rounds."""
+        """Generate a loop, whose start has the alignment that holds for the first and all further iterations."""
         self.flush()
         self.sync()
         before = self.place
@@ -252,7 +253,7 @@ class _WriterCode:
     # --- pieces ---------------------------------------------------------------------------------------------
 
     def align(self, size: int) -> None:
-        """Pad up to a multiple of a size."""
+        """Generate the padding up to a multiple of a size."""
         padding = self.place.padding(size)
         if padding is None:
             self._end_run()
@@ -267,13 +268,13 @@ class _WriterCode:
             self._advance(padding)
 
     def pack(self, code: str, value: str, place: Place | None = None) -> None:
-        """Pack one primitive at an aligned place; with `place` it is not counted."""
+        """Generate the packing of a primitive at an aligned position; with `place`, the position does not advance."""
         self._run.append((code, value))
         if place is None:
             self._advance(struct.calcsize("<" + code))
 
     def flush(self) -> None:
-        """Append the collected fields to the list of pieces."""
+        """Generate the code that appends the collected fields to the list of parts."""
         self._end_run()
         if self._pieces:
             self._uses_list = True
@@ -281,7 +282,7 @@ class _WriterCode:
             self._pieces = []
 
     def sync(self) -> None:
-        """Set the variable `p` to the position."""
+        """Generate the code that sets the variable `p` to the position."""
         if self._unsynced:
             numbers = sum(int(term) for term in self._unsynced if term.isdigit())
             terms = [term for term in self._unsynced if not term.isdigit()]

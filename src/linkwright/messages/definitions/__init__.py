@@ -1,1 +1,1 @@
-"""The definitions of interfaces: where they are found, reading them, and their hashes."""
+"""The definitions of interfaces: find them, parse them, and compute their hashes."""

@@ -1,8 +1,9 @@
-"""Definitions that recordings carry for their messages.
+"""The message definitions that recordings contain.
 
-The text of one message comes first, then those of the messages in it, each after a line of ``=`` and one that names it
-(``MSG: geometry_msgs/Point``; ``IDL:`` for those in IDL). That is MCAP's ``ros2msg`` and ``ros2idl``, and rosbag2's in
-SQLite files.
+The text of one message comes first, followed by the texts of the messages in it, each after a line of ``=`` and a line
+with its name (``MSG: geometry_msgs/Point``; ``IDL:`` for IDL). This is the format of MCAP's ``ros2msg`` and
+``ros2idl``,
+and of rosbag2's SQLite files.
 """
 
 from __future__ import annotations
@@ -17,13 +18,14 @@ _NEXT = re.compile(r"^={10,}\s*\n(MSG|IDL): *(\S+) *\n?", re.MULTILINE)
 
 
 def add_definitions(type_name: str, text: str, origin: str, *, idl: bool = False) -> None:
-    """Register the definition of a message, and of those in it, from data.
+    """Register the definition of a message, and of the messages in it, from data.
 
-    Interfaces that come with Linkwright and those of the workspace take precedence, and of two texts for one name the
-    first. The texts are read when their messages are requested, and their mistakes are reported then.
+    Interfaces that come with Linkwright and those of the workspace take precedence, and so does the first of two texts
+    for
+    one name. The texts are parsed when their messages are requested, and their mistakes are reported then.
 
     Args:
-        type_name: such as ``my_msgs/msg/Count``; a text that is not a name of a message is ignored.
+        type_name: the type, such as ``my_msgs/msg/Count``; a text that is not the name of a message is ignored.
         text: the definitions.
         origin: the source of the texts, for messages about mistakes in them.
         idl: whether the first one is IDL.

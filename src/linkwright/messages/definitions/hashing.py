@@ -1,8 +1,8 @@
-"""The hash of a type as ROS 2 (Iron and newer) sends it with endpoints: RIHS01, the SHA-256 of a type description.
+"""The hash of a type that ROS 2 (Iron and newer) sends with endpoints: RIHS01, the SHA-256 of a type description.
 
-The description is that of type_description_interfaces (REP 2011, REP 2016): the fields' names and types, without
-defaults and constants, and those of all structures within. rosidl hashes it as JSON, with these very separators and
-this order of keys.
+The description is that of type_description_interfaces (REP 2011, REP 2016): the names and types of the fields, without
+defaults and constants, and the same for all nested structures. rosidl hashes it as JSON, with exactly the separators
+and the order of keys used here.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ _BOUNDED_SEQUENCE = 96
 
 
 def type_hash(interface: Any) -> str:
-    """The hash of a message, service or action: ``RIHS01_`` and 64 hexadecimal digits.
+    """Return the hash of a message, service or action: ``RIHS01_`` and 64 hexadecimal digits.
 
     Args:
         interface: the class, or its type name.
 
     Raises:
-        InterfaceNotFoundError: there is none of this name.
+        InterfaceNotFoundError: there is no interface with this name.
     """
     name = interface if isinstance(interface, str) else interface.TYPE_NAME
     return _hash(LIBRARY.definition(name).type_name)
@@ -52,15 +52,18 @@ def _hash(type_name: str) -> str:
 
 
 def hash_of(description: dict[str, Any]) -> str:
-    """The hash of a type description."""
-    import hashlib  # here, because a process that stays to itself sends no hashes
+    """Return the hash of a type description."""
+    import hashlib  # imported here because a process without a network sends no hashes
     import json
 
     return "RIHS01_" + hashlib.sha256(json.dumps(description, separators=(", ", ": ")).encode()).hexdigest()
 
 
 def type_description(definition: Definition) -> dict[str, Any]:
-    """A type and all within it, as a type_description_interfaces/msg/TypeDescription without default values."""
+    """Return the description of a type and of all nested types.
+
+    It has the form of a type_description_interfaces/msg/TypeDescription without default values.
+    """
     described = _individual(definition)
     seen: dict[str, dict[str, Any]] = {}
     waiting = _nested_names(described)
@@ -81,7 +84,7 @@ def _individual(definition: Definition) -> dict[str, Any]:
 
 
 def _members(definition: Definition) -> tuple[Field, ...]:
-    """The fields of a structure; services and actions are described as if they had some too."""
+    """Return the fields of a structure; services and actions are described as if they had fields too."""
     if isinstance(definition, Structure):
         return definition.wire_fields
     if isinstance(definition, Service):

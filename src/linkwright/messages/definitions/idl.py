@@ -1,8 +1,9 @@
-"""Reads ``.idl`` files, as far as ROS interfaces are written in them.
+"""Parse ``.idl`` files, as far as ROS interfaces use the language.
 
-That is what rosidl makes of ``.msg``, ``.srv`` and ``.action`` files: modules, structures of primitives, texts,
-sequences and arrays, typedefs of these, constants, and ``@default``. Other annotations are skipped; unions,
-enumerations and the other constructs of IDL that such files do not have are refused with their place.
+Supported is everything that rosidl generates from ``.msg``, ``.srv`` and ``.action`` files: modules, structures of
+primitives, strings, sequences and arrays, typedefs of these, constants, and ``@default``. Other annotations are
+skipped.
+Unions, enumerations and other constructs of IDL that such files do not have are refused with their location.
 """
 
 from __future__ import annotations
@@ -61,8 +62,8 @@ def parse_idl(source: SourceText, type_name: str, known: KnownMessages) -> Defin
 
     Args:
         source: the text of the file.
-        type_name: the interface's, such as ``my_msgs/msg/Count``.
-        known: which messages there are.
+        type_name: the name of the interface, such as ``my_msgs/msg/Count``.
+        known: answers which messages exist.
 
     Raises:
         DefinitionError: MSG120 for text that is not understood, MSG111, MSG114, MSG118 and MSG119 as for other files.
@@ -185,7 +186,7 @@ class _Reader:
         self.constants.setdefault(owner, []).append(constant)
 
     def _annotations(self) -> _Token | None:
-        """Skip annotations; the value of ``@default (value=...)``, if it is among them."""
+        """Skip annotations; return the value of ``@default (value=...)`` if it is among them."""
         default = None
         while self._now.text == "@":
             self._expect("@")
@@ -208,7 +209,7 @@ class _Reader:
             return None
         text = _plain(token)
         if kind.container is not Container.ONE:
-            # rosidl writes lists as a text: "(1, 2, 3)".
+            # rosidl writes a list as a string: "(1, 2, 3)".
             inside = text[1:-1] if text[:1] in {'"', "'"} else text
             text = "[" + inside.strip().removeprefix("(").removesuffix(")") + "]"
         try:
@@ -261,7 +262,7 @@ class _Reader:
         return FieldType(one.base, one.string_bound, Container.SEQUENCE, size)
 
     def _declared(self, kind: FieldType) -> tuple[str, FieldType]:
-        """A declared name, and its type with the array size behind the name, if there is one."""
+        """Parse a declared name; return it and its type, including an array size after the name."""
         token = self._expect_kind("name")
         if self._now.text != "[":
             return token.text, kind
@@ -334,7 +335,7 @@ class _Reader:
 
 
 def _plain(token: _Token) -> str:
-    """A literal in the form of ``.msg`` files."""
+    """Return a literal in the form of ``.msg`` files."""
     if token.kind == "text":
         return token.text.removeprefix("L")
     if token.kind == "number" and not token.text.lower().startswith(("0x", "-0x")):

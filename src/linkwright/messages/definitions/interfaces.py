@@ -1,4 +1,4 @@
-"""Interfaces as data: names, primitive types, fields, constants, and what rosidl adds to them."""
+"""Interfaces as data: names, primitive types, fields, constants, and the definitions that rosidl adds to them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ KINDS = ("msg", "srv", "action")
 
 
 class InterfaceName(NamedTuple):
-    """An interface's name in its parts; `kind` is None where the text left it out (``sensor_msgs/JointState``)."""
+    """The parts of an interface's name; `kind` is None if the text omits it (``sensor_msgs/JointState``)."""
 
     package: str
     kind: str | None
@@ -21,7 +21,7 @@ class InterfaceName(NamedTuple):
 
 
 def split_name(text: str) -> InterfaceName | None:
-    """The parts of ``package/kind/Name`` or ``package/Name``; None when the text is neither."""
+    """Return the parts of ``package/kind/Name`` or ``package/Name``; None for any other text."""
     parts = text.split("/")
     if len(parts) == 3 and parts[1] in KINDS:
         package, kind, name = parts
@@ -34,32 +34,34 @@ def split_name(text: str) -> InterfaceName | None:
 
 
 def is_package_name(text: str) -> bool:
-    """Whether a package of interfaces may have this name (lower case, digits, single underscores)."""
+    """Return whether an interface package may have this name (lower case, digits, single underscores)."""
     return _is_words(text) and text == text.lower()
 
 
 def is_interface_name(text: str) -> bool:
-    """Whether an interface may have this name (CamelCase); parts made by rosidl, as ``SetBool_Request``, too."""
+    """Return whether an interface may have this name (CamelCase), or rosidl creates it, such as ``SetBool_Request``."""
     return text.isascii() and all(part.isalnum() and part[0].isupper() for part in text.split("_"))
 
 
 def is_field_name(text: str) -> bool:
-    """Whether a field may have this name (lower case, digits, single underscores)."""
+    """Return whether a field may have this name (lower case, digits, single underscores)."""
     return is_package_name(text)
 
 
 def is_constant_name(text: str) -> bool:
-    """Whether a constant may have this name (upper case, digits, single underscores)."""
+    """Return whether a constant may have this name (upper case, digits, single underscores)."""
     return _is_words(text) and text == text.upper()
 
 
 def _is_words(text: str) -> bool:
-    # Not regular expressions: compiling them takes longer than all names of a process.
+    # No regular expressions: compiling them takes longer than checking all names of a process.
     return text.isascii() and text[:1].isalpha() and all(word.isalnum() for word in text.split("_"))
 
 
 def snake_case(name: str) -> str:
-    """The module name of an interface: ``JointState`` gives ``joint_state``, ``TFMessage`` ``tf_message`` (rosidl)."""
+    """Return the module name of an interface: ``JointState`` gives ``joint_state``, ``TFMessage`` ``tf_message``
+    (rosidl).
+    """
     words: list[str] = []
     for at, letter in enumerate(name):
         if letter.isupper() and at:
@@ -71,23 +73,25 @@ def snake_case(name: str) -> str:
 
 
 def python_module(type_name: str) -> str:
-    """The module that rosidl_generator_py puts a class into: ``std_srvs.srv._set_bool`` for all of SetBool's."""
+    """Return the module in which rosidl_generator_py puts a class: ``std_srvs.srv._set_bool`` for all of SetBool's
+    classes.
+    """
     package, kind, name = type_name.split("/")
     return f"{package}.{kind}._{snake_case(name.split('_')[0])}"
 
 
 class Primitive(NamedTuple):
-    """One primitive type.
+    """A primitive type.
 
     Attributes:
         idl_name: its name in rosidl, as `get_fields_and_field_types` shows.
         python: the type that a value must have.
-        code: of `struct` for one value; None for text.
-        size: bytes on the wire, which is the alignment too; of text, those of its length.
-        type_id: in the type descriptions of REP 2016, whose hash is sent with endpoints.
-        array_code: of `array.array`; None where rclpy holds several values in a list.
-        low: the least value of an integer type.
-        high: the greatest value of an integer type; the greatest finite one of a floating point type.
+        code: the `struct` code for one value; None for strings.
+        size: the number of bytes on the wire, which is also the alignment; for strings, the size of the length.
+        type_id: its id in the type descriptions of REP 2016, whose hash is sent with endpoints.
+        array_code: the `array.array` code; None if rclpy stores several values in a list.
+        low: the minimum of an integer type.
+        high: the maximum of an integer type; the largest finite value of a floating-point type.
     """
 
     idl_name: str
@@ -101,12 +105,12 @@ class Primitive(NamedTuple):
 
     @property
     def is_integer(self) -> bool:
-        """Whether values are integers; bytes and bools are not counted as such."""
+        """Whether values are integers; bytes and bools do not count as integers."""
         return self.python is int
 
     @property
     def dtype(self) -> str:
-        """The name of numpy's type, for those with an array code."""
+        """The name of numpy's type, for types with an array code."""
         return {"float": "float32", "double": "float64"}.get(self.idl_name, self.idl_name)
 
 
@@ -118,7 +122,7 @@ def _integer(name: str, code: str, bits: int, type_id: int, *, signed: bool) -> 
 PRIMITIVES: dict[str, Primitive] = {
     "int8": _integer("int8", "b", 8, 2, signed=True),
     "uint8": _integer("uint8", "B", 8, 3, signed=False),
-    # In .msg files char has meant an unsigned byte since ROS 1, and rosidl turns it into one.
+    # In .msg files, char has been an unsigned byte since ROS 1, and rosidl maps it to one.
     "char": _integer("uint8", "B", 8, 3, signed=False),
     "int16": _integer("int16", "h", 16, 4, signed=True),
     "uint16": _integer("uint16", "H", 16, 5, signed=False),
@@ -152,9 +156,9 @@ class FieldType(NamedTuple):
 
     Attributes:
         base: the type of one value: a primitive's name as in ``.msg`` files, or the type name of another structure.
-        string_bound: the most characters a string may have; None if there is no bound.
+        string_bound: the maximum number of characters of a string; None if there is no bound.
         container: one value, an array of fixed length, or a sequence.
-        size: the length of an array or the most values of a bounded sequence; None otherwise.
+        size: the length of an array, or the maximum number of values of a bounded sequence; otherwise None.
     """
 
     base: str
@@ -169,12 +173,13 @@ class FieldType(NamedTuple):
 
     @property
     def is_numeric_array(self) -> bool:
-        """Whether Python holds the values in a numpy array or an ``array.array`` instead of a list."""
+        """Whether Python stores the values in a numpy array or an ``array.array`` instead of a list."""
         primitive = self.primitive
         return self.container is not Container.ONE and primitive is not None and primitive.array_code is not None
 
     def spelled(self, package: str | None = None) -> str:
-        """The type as in a ``.msg`` file of `package`, such as ``geometry_msgs/Point[<=3]`` or ``string<=10``."""
+        """Return the type as in a ``.msg`` file of `package`, such as ``geometry_msgs/Point[<=3]`` or ``string<=10``.
+        """
         text = self.base
         if "/" in text:
             owner, _, name = text.split("/")
@@ -188,7 +193,7 @@ class FieldType(NamedTuple):
         return text
 
     def described(self) -> str:
-        """The type as ``get_fields_and_field_types`` has it: ``sequence<double, 3>``, ``geometry_msgs/Point[3]``."""
+        """Return the type as in ``get_fields_and_field_types``: ``sequence<double, 3>``, ``geometry_msgs/Point[3]``."""
         primitive = self.primitive
         if primitive is not None:
             text = primitive.idl_name
@@ -205,12 +210,12 @@ class FieldType(NamedTuple):
 
 
 class Field(NamedTuple):
-    """One field.
+    """A field of a structure.
 
     Attributes:
-        name: as Python users write it.
-        type: of its value.
-        default: as the file gives it (a tuple for arrays and sequences); None where the file gives none.
+        name: its name, as Python users write it.
+        type: its type.
+        default: its default as in the file (a tuple for arrays and sequences); None if the file gives none.
     """
 
     name: str
@@ -219,7 +224,7 @@ class Field(NamedTuple):
 
 
 class Constant(NamedTuple):
-    """A named value; `type` is a primitive's name."""
+    """A named constant; `type` is the name of a primitive."""
 
     name: str
     type: str
@@ -227,12 +232,12 @@ class Constant(NamedTuple):
 
 
 class Structure(NamedTuple):
-    """The content of a message; requests, goals and the like are such structures too.
+    """The content of a message, or of a part of a service or action, such as a request or a goal.
 
     Attributes:
-        type_name: such as ``geometry_msgs/msg/Point`` or ``std_srvs/srv/SetBool_Request``.
-        fields: in the order of the file.
-        constants: in the order of the file.
+        type_name: the type, such as ``geometry_msgs/msg/Point`` or ``std_srvs/srv/SetBool_Request``.
+        fields: the fields in the order of the file.
+        constants: the constants in the order of the file.
     """
 
     type_name: str
@@ -241,17 +246,17 @@ class Structure(NamedTuple):
 
     @property
     def wire_fields(self) -> tuple[Field, ...]:
-        """The fields, with rosidl's filler if there are none."""
+        """The fields on the wire: those of the structure, or rosidl's filler field if there are none."""
         return self.fields or (Field(EMPTY_MEMBER, FieldType("uint8")),)
 
     @property
     def references(self) -> Iterator[str]:
-        """The type names of the structures that fields use, each as often as it occurs."""
+        """The type names of the structures that fields use, repeated for each use."""
         return (field.type.base for field in self.fields if "/" in field.type.base)
 
 
 class Service(NamedTuple):
-    """A service: a request and the response to it."""
+    """A service: a request and its response."""
 
     type_name: str
     request: Structure
@@ -259,7 +264,7 @@ class Service(NamedTuple):
 
 
 class Action(NamedTuple):
-    """An action: a goal, feedback on the way, and a result."""
+    """An action: a goal, feedback during its execution, and a result."""
 
     type_name: str
     goal: Structure
@@ -271,7 +276,7 @@ Definition = Structure | Service | Action
 
 
 def interface_of(type_name: str, structures: Sequence[Structure]) -> Definition:
-    """The message, service or action of a name that consists of structures, in the order of the file."""
+    """Return the message, service or action that consists of structures, given in the order of the file."""
     kind = type_name.split("/")[1]
     if kind == "msg":
         return structures[0]
@@ -279,7 +284,7 @@ def interface_of(type_name: str, structures: Sequence[Structure]) -> Definition:
 
 
 def structures_of(definition: Definition) -> tuple[Structure, ...]:
-    """The structures that a file defines, in the order of the file."""
+    """Return the structures that a file defines, in the order of the file."""
     if isinstance(definition, Structure):
         return (definition,)
     if isinstance(definition, Service):
@@ -287,13 +292,13 @@ def structures_of(definition: Definition) -> tuple[Structure, ...]:
     return (definition.goal, definition.result, definition.feedback)
 
 
-# --- what rosidl makes of services and actions beside what the file names ---------------------------------------
+# --- definitions that rosidl adds to services and actions -------------------------------------------------------
 
 _GOAL_ID = Field("goal_id", FieldType("unique_identifier_msgs/msg/UUID"))
 
 
 def event_of(service: Service) -> Structure:
-    """The message of a service's introspection topic (REP 2012)."""
+    """Return the message of a service's introspection topic (REP 2012)."""
     return Structure(
         service.type_name + "_Event",
         (
@@ -305,7 +310,7 @@ def event_of(service: Service) -> Structure:
 
 
 def send_goal_of(action: Action) -> Service:
-    """The service of an action server that accepts goals."""
+    """Return the service through which an action server accepts goals."""
     name = action.type_name + "_SendGoal"
     return Service(
         name,
@@ -318,7 +323,7 @@ def send_goal_of(action: Action) -> Service:
 
 
 def get_result_of(action: Action) -> Service:
-    """The service of an action server that returns a goal's status and result after its end."""
+    """Return the service through which an action server returns a goal's status and result after its end."""
     name = action.type_name + "_GetResult"
     return Service(
         name,
@@ -331,14 +336,14 @@ def get_result_of(action: Action) -> Service:
 
 
 def feedback_message_of(action: Action) -> Structure:
-    """The message of an action's feedback topic: the feedback, and the id of its goal."""
+    """Return the message of an action's feedback topic: the feedback, and the id of its goal."""
     return Structure(
         action.type_name + "_FeedbackMessage", (_GOAL_ID, Field("feedback", FieldType(action.feedback.type_name)))
     )
 
 
 def parts_of(definition: Definition) -> dict[str, Definition]:
-    """Everything that rosidl makes of an interface file: type name -> definition, itself included."""
+    """Return all definitions that rosidl derives from an interface, including itself: type name -> definition."""
     parts: dict[str, Definition] = {definition.type_name: definition}
     if isinstance(definition, Service):
         for structure in (definition.request, definition.response, event_of(definition)):

@@ -1,6 +1,6 @@
-"""Finds the definition of an interface by its name.
+"""Find the definition of an interface by its name.
 
-Those that come with Linkwright go first, then those of the workspace, then those that data brought along.
+Interfaces that come with Linkwright take precedence, then those of the workspace, then those that data contained.
 """
 
 from __future__ import annotations
@@ -51,11 +51,12 @@ KIND_NAMES = {"msg": "message", "srv": "service", "action": "action"}
 
 
 class Library:
-    """All interfaces that are known, read when they are asked for; safe to use from several threads.
+    """All known interfaces, read on demand; may be used from several threads.
 
-    An interface that comes with Linkwright is taken from there, even if the workspace has one of the same name; others
-    are read from the interface files of the packages that the finder in force finds, without a build. What neither has
-    may be known by a text that data brought along.
+    Interfaces that come with Linkwright take precedence over interfaces of the workspace with the same name. Others are
+    read, without a build, from the interface files of the packages that the current finder finds. An interface that is
+    in
+    neither place may be known from a definition that data contained.
     """
 
     def __init__(self) -> None:
@@ -69,11 +70,12 @@ class Library:
         self._lock = threading.RLock()
 
     def definition(self, name: str, *kinds: str) -> Definition:
-        """The definition of a message, service or action, or of one of its parts (``std_srvs/srv/SetBool_Request``).
+        """Return the definition of a message, service or action, or of one of its parts
+        (``std_srvs/srv/SetBool_Request``).
 
         Args:
             name: ``package/kind/Name``, or ``package/Name``.
-            kinds: which of ``msg``, ``srv`` and ``action`` are meant; any of them when left out.
+            kinds: the accepted kinds of ``msg``, ``srv`` and ``action``; any kind if omitted.
 
         Raises:
             InterfaceNotFoundError: MSG101 with the nearest names, MSG102 for a text that is not a name.
@@ -86,37 +88,37 @@ class Library:
             return self._look_up(name, kinds or KINDS)
 
     def structure(self, type_name: str) -> Structure:
-        """The definition of a structure, by its full type name."""
+        """Return the definition of a structure by its full type name."""
         found = self.definition(type_name)
         assert isinstance(found, Structure)
         return found
 
     def source(self, name: str) -> SourceText:
-        """The interface file that a definition was read from; those that come with Linkwright have our own comments.
+        """Return the interface file of a definition; the files that come with Linkwright have our own comments.
 
         Raises:
-            InterfaceNotFoundError: as `definition`.
+            InterfaceNotFoundError: as in `definition`.
         """
         type_name = self.definition(name).type_name
         package, kind, part = type_name.split("/")
         return self._sources[f"{package}/{kind}/{part.partition('_')[0]}"]
 
     def carry(self, type_name: str, source: SourceText) -> None:
-        """Register the text of a message that came with data; the first of a name is kept.
+        """Register the text of a message definition contained in data; the first text for a name is kept.
 
         Args:
-            type_name: the message's.
-            source: its text; a name that ends with ``.idl`` marks it as IDL.
+            type_name: the type of the message.
+            source: its text; the suffix ``.idl`` in its name marks it as IDL.
         """
         with self._lock:
             self._carried.setdefault(type_name, source)
 
     def names(self, kind: str, package: str | None = None) -> list[str]:
-        """The type names of all interfaces of one kind, those of the workspace included, sorted.
+        """Return the type names of all interfaces of one kind, including those of the workspace, sorted.
 
         Args:
             kind: ``msg``, ``srv`` or ``action``.
-            package: only this one's.
+            package: the package; None for all.
         """
         found = {
             f"{owner}/{name}"
@@ -146,7 +148,7 @@ class Library:
         raise InterfaceNotFoundError(self._unknown(name, kinds))
 
     def _load(self, full: str) -> Definition | None:
-        """Read the file of an interface, and register all that rosidl makes of it."""
+        """Read the file of an interface, and register all definitions that rosidl derives from it."""
         package, kind, name = full.split("/")
         base = f"{package}/{kind}/{name.partition('_')[0]}"
         if base in self._sources:
@@ -181,7 +183,7 @@ class Library:
         return None if path is None else _read(path)
 
     def has_message(self, type_name: str) -> bool:
-        """Whether there is a message of this full name, be its file right or wrong."""
+        """Return whether there is a message with this full name, whether or not its file is valid."""
         package, _, rest = type_name.partition("/")
         if rest in catalogue.texts(package) or type_name in self._carried:
             return True
@@ -189,7 +191,7 @@ class Library:
         return share is not None and interface_file(share, *rest.split("/")) is not None
 
     def hint_for(self, type_name: str) -> Phrase | None:
-        """A hint for the name of a missing message: similar names."""
+        """Return a hint with names similar to that of a missing message, or None."""
         name = split_name(type_name)
         return None if name is None else self._unknown(name, ("msg",)).hint
 
@@ -211,7 +213,9 @@ class Library:
     # --- the workspace --------------------------------------------------------------------------------------
 
     def _finder(self) -> PackageFinder:
-        """The finder in use. One of our own is kept for a while: it has read the folders of the workspace."""
+        """Return the current finder; without one, a finder that is cached for a while, because it has read the
+        workspace.
+        """
         finder = active_finder()
         if finder is None:
             now, folder = time.monotonic(), os.getcwd()  # noqa: PTH109 - a Path takes longer
@@ -270,19 +274,19 @@ class Library:
 
 
 class _Trusted:
-    """Takes the place of the checks for files that come with Linkwright; a test makes those checks."""
+    """Replaces the checks for files that come with Linkwright, which a test checks instead."""
 
     def has_message(self, type_name: str) -> bool:
-        """True."""
+        """Return True for any name."""
         return True
 
     def hint_for(self, type_name: str) -> Phrase | None:
-        """None."""
+        """Return None, because no message is missing."""
         return None
 
 
 def _parsed(source: SourceText, base: str, known: KnownMessages) -> Definition:
-    """Parse a file, whichever of the two languages it is written in."""
+    """Parse an interface file in either of the two languages."""
     if source.name.endswith(".idl"):
         from linkwright.messages.definitions.idl import parse_idl
 
@@ -291,7 +295,8 @@ def _parsed(source: SourceText, base: str, known: KnownMessages) -> Definition:
 
 
 def not_of_kind(definition: Definition, kind: str) -> Diagnostic:
-    """A hint for an interface that exists but is not of the requested kind (message, service or action)."""
+    """Return a diagnostic for an interface that exists but is not of the requested kind (message, service or action).
+    """
     name = definition.type_name
     is_a = {Structure: phrase("a message"), Service: phrase("a service"), Action: phrase("an action")}[type(definition)]
     return Diagnostic(

@@ -1,4 +1,4 @@
-"""Parsing interface files, with their constants and default values."""
+"""Parse interface files, with their constants and default values."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "0": "\0", "\\": "\\", '"': '"', "'
 
 
 class LiteralFault(Exception):  # noqa: N818 - not an error of the program; the parser turns it into a diagnostic
-    """A text is not a value of the type; the argument is the reason."""
+    """Raised when a text is not a value of a type; the argument is the reason."""
 
 
 def read_default(text: str, kind: FieldType) -> object:
-    """Parse the default value of a field's line: one value, or a tuple of them.
+    """Parse the default value of a field: one value, or a tuple of values.
 
     Raises:
         LiteralFault: the text is not a value of the type.
@@ -82,7 +82,7 @@ def read_constant(text: str, type_name: str) -> Value:
 
 
 def split_list(text: str) -> list[str]:
-    """The items of a list, at its commas; those inside of quotes do not count."""
+    """Split a list at its commas, except those inside quotes."""
     items: list[str] = []
     at = 0
     while at < len(text):
@@ -92,7 +92,7 @@ def split_list(text: str) -> list[str]:
             break
         items.append(match.group(1))
         at = match.end()
-    if items and not items[-1] and len(items) > 1:  # a comma at the end
+    if items and not items[-1] and len(items) > 1:  # a trailing comma
         items.pop()
     return items
 
@@ -200,13 +200,13 @@ class _Section:
 
 
 class KnownMessages(Protocol):
-    """The interface that answers which messages exist."""
+    """The interface for asking which messages exist."""
 
     def has_message(self, type_name: str) -> bool:
-        """Whether there is a message of this full name."""
+        """Return whether there is a message with this full name."""
 
     def hint_for(self, type_name: str) -> Phrase | None:
-        """A hint for the name of a missing message: similar names."""
+        """Return a hint with names similar to that of a missing message, or None."""
 
 
 def parse_interface(source: SourceText, type_name: str, known: KnownMessages) -> Definition:
@@ -214,11 +214,11 @@ def parse_interface(source: SourceText, type_name: str, known: KnownMessages) ->
 
     Args:
         source: the text of the file.
-        type_name: the interface's, such as ``my_msgs/srv/Count``.
-        known: which messages there are.
+        type_name: the name of the interface, such as ``my_msgs/srv/Count``.
+        known: answers which messages exist.
 
     Raises:
-        DefinitionError: with every mistake of the file, MSG110 to MSG119.
+        DefinitionError: with every mistake in the file, MSG110 to MSG119.
     """
     return _Reader(source, type_name, known).read()
 
@@ -460,7 +460,7 @@ class _Reader:
 
 
 def _without_comment(line: str) -> str:
-    """The line up to its comment; a ``#`` inside of quotes begins none."""
+    """Return a line up to its comment; a ``#`` inside quotes does not begin a comment."""
     if "#" not in line:
         return line
     quote = None
@@ -472,5 +472,6 @@ def _without_comment(line: str) -> str:
             quote = character
         elif character == "#":
             return line[:at]
-    # An apostrophe that closes nothing ("string name  # the robot's") has hidden nothing: it was in the comment.
+    # An apostrophe that is never closed ("string name  # the robot's") was in the comment, so the first ``#`` begins
+    # it.
     return line.partition("#")[0] if quote else line

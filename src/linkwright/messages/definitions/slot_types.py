@@ -1,4 +1,4 @@
-"""The types of fields as rosidl_parser has them, for ``SLOT_TYPES``, which code written for rclpy reads."""
+"""The types of fields as in rosidl_parser, for ``SLOT_TYPES``, which code written for rclpy reads."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from linkwright.messages.definitions.interfaces import Container, FieldType, Str
 
 
 class AbstractType:
-    """Any type; types of the same content are equal."""
+    """Any type; types with the same content are equal."""
 
     __slots__ = ()
 
@@ -27,13 +27,13 @@ class AbstractType:
 
 
 class AbstractNestableType(AbstractType):
-    """A type that an array or a sequence may have for its values."""
+    """A type that the values of an array or a sequence may have."""
 
     __slots__ = ()
 
 
 class BasicType(AbstractNestableType):
-    """A number, a bool, a byte or a character, under the name that IDL has for it."""
+    """A number, a bool, a byte or a character, with its name in IDL."""
 
     __slots__ = ("typename",)
 
@@ -42,7 +42,7 @@ class BasicType(AbstractNestableType):
 
 
 class NamedType(AbstractNestableType):
-    """A type by a name without namespaces."""
+    """A type referred to by a name without namespaces."""
 
     __slots__ = ("name",)
 
@@ -51,7 +51,7 @@ class NamedType(AbstractNestableType):
 
 
 class NamespacedType(AbstractNestableType):
-    """A structure: ``NamespacedType(['std_msgs', 'msg'], 'Header')``."""
+    """A structure, such as ``NamespacedType(['std_msgs', 'msg'], 'Header')``."""
 
     __slots__ = ("name", "namespaces")
 
@@ -63,34 +63,34 @@ class NamespacedType(AbstractNestableType):
         return self.namespaces, self.name
 
     def namespaced_name(self) -> tuple[str, ...]:
-        """The namespaces and the name."""
+        """Return the namespaces and the name."""
         return (*self.namespaces, self.name)
 
 
 class AbstractGenericString(AbstractNestableType):
-    """Any text."""
+    """Any string type."""
 
     __slots__ = ()
 
     def has_maximum_size(self) -> bool:
-        """Whether its length is bounded."""
+        """Return whether the length is bounded."""
         return False
 
 
 class AbstractString(AbstractGenericString):
-    """Text in UTF-8."""
+    """A UTF-8 string."""
 
     __slots__ = ()
 
 
 class AbstractWString(AbstractGenericString):
-    """Text in UTF-16."""
+    """A UTF-16 string."""
 
     __slots__ = ()
 
 
 class BoundedString(AbstractString):
-    """Text of at most so many characters."""
+    """A UTF-8 string with a maximum number of characters."""
 
     __slots__ = ("maximum_size",)
 
@@ -98,18 +98,18 @@ class BoundedString(AbstractString):
         self.maximum_size = maximum_size
 
     def has_maximum_size(self) -> bool:
-        """True."""
+        """Return True, because the length is bounded."""
         return True
 
 
 class UnboundedString(AbstractString):
-    """Text of any length."""
+    """A UTF-8 string of any length."""
 
     __slots__ = ()
 
 
 class BoundedWString(AbstractWString):
-    """Text in UTF-16 of at most so many characters."""
+    """A UTF-16 string with a maximum number of characters."""
 
     __slots__ = ("maximum_size",)
 
@@ -117,18 +117,18 @@ class BoundedWString(AbstractWString):
         self.maximum_size = maximum_size
 
     def has_maximum_size(self) -> bool:
-        """True."""
+        """Return True, because the length is bounded."""
         return True
 
 
 class UnboundedWString(AbstractWString):
-    """Text in UTF-16 of any length."""
+    """A UTF-16 string of any length."""
 
     __slots__ = ()
 
 
 class AbstractNestedType(AbstractType):
-    """Several values of one type."""
+    """An array or sequence: several values of one type."""
 
     __slots__ = ("value_type",)
 
@@ -136,12 +136,12 @@ class AbstractNestedType(AbstractType):
         self.value_type = value_type
 
     def has_maximum_size(self) -> bool:
-        """Whether the number of values is bounded."""
+        """Return whether the number of values is bounded."""
         return False
 
 
 class Array(AbstractNestedType):
-    """A fixed number of values."""
+    """An array of a fixed number of values."""
 
     __slots__ = ("size",)
 
@@ -150,18 +150,18 @@ class Array(AbstractNestedType):
         self.size = size
 
     def has_maximum_size(self) -> bool:
-        """True."""
+        """Return True, because the number of values is fixed."""
         return True
 
 
 class AbstractSequence(AbstractNestedType):
-    """Any number of values."""
+    """A sequence, bounded or not."""
 
     __slots__ = ()
 
 
 class BoundedSequence(AbstractSequence):
-    """At most so many values."""
+    """A sequence with a maximum number of values."""
 
     __slots__ = ("maximum_size",)
 
@@ -170,23 +170,23 @@ class BoundedSequence(AbstractSequence):
         self.maximum_size = maximum_size
 
     def has_maximum_size(self) -> bool:
-        """True."""
+        """Return True, because the number of values is bounded."""
         return True
 
 
 class UnboundedSequence(AbstractSequence):
-    """Any number of values."""
+    """A sequence of any number of values."""
 
     __slots__ = ()
 
 
 def slot_types(structure: Structure) -> tuple[AbstractType, ...]:
-    """The types of a structure's fields, in their order."""
+    """Return the types of a structure's fields, in their order."""
     return tuple(slot_type(field.type) for field in structure.fields)
 
 
 def slot_type(kind: FieldType) -> AbstractType:
-    """The type of one field."""
+    """Return the type of a field."""
     value_type = _value_type(kind)
     if kind.container is Container.ONE:
         return value_type
