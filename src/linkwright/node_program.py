@@ -1,6 +1,6 @@
-"""``python -m linkwright.node_program PACKAGE EXECUTABLE ARGUMENTS``: see `linkwright.nodes.process`.
+"""Entry point of ``python -m linkwright.node_program PACKAGE EXECUTABLE ARGUMENTS``; see `linkwright.nodes.process`.
 
-It is outside of the package of the nodes, so that Ctrl-C ends it quietly while that is being loaded.
+It is outside the package of the nodes so that Ctrl-C ends it quietly while that package is being loaded.
 """
 
 import sys
