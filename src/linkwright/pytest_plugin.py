@@ -1,7 +1,7 @@
 """A pytest plugin: a plain ``python -m pytest`` imports ``rclpy``, ``launch`` and messages, as tests do under ROS 2.
 
-pytest loads it in every environment that has Linkwright. It offers the modules that a shell of Linkwright adds to
-``PYTHONPATH``, and imports nothing before a test does. If a real rclpy is installed, it offers nothing.
+pytest loads it in every environment that has Linkwright. It provides the modules that a shell of Linkwright adds to
+``PYTHONPATH``, and imports nothing before a test does. If a real rclpy is installed, it provides nothing.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _LINTER_MARKERS = {
 
 
 def _offer_stand_ins() -> None:
-    """Add the folder as Python does at its start if ``PYTHONPATH`` names it."""
+    """Add the stand-ins' folder to the path, as Python does at startup if ``PYTHONPATH`` names it."""
     if str(_STARTUP) in sys.path:
         return
     sys.path.append(str(_STARTUP))
@@ -40,12 +40,12 @@ _offer_stand_ins()  # before pytest imports a conftest.py
 
 
 def pytest_addoption(pluginmanager: pytest.PytestPluginManager) -> None:
-    """Register the plugin of launch_pytest and launch_testing, in time for its options."""
+    """Register the plugin of launch_pytest and launch_testing early enough to add its options."""
     if not pluginmanager.has_plugin("linkwright_pytest"):
         pluginmanager.import_plugin("linkwright_pytest")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Declare the linters' markers."""
+    """Register the linters' markers."""
     for name, meaning in _LINTER_MARKERS.items():
         config.addinivalue_line("markers", f"{name}: {meaning}")
