@@ -1,4 +1,4 @@
-"""Modules that replace those of ROS 2 where these are not installed."""
+"""Modules that stand in for ROS 2 modules that are not installed."""
 
 from linkwright.standins.activation import activate
 

@@ -1,4 +1,4 @@
-"""Makes our modules importable as ``launch``, ``rclpy`` and so on."""
+"""Make our modules importable as ``launch``, ``rclpy`` and so on."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ROS: the real ones would need their own launcher."""
 def activate() -> None:
     """Make the modules for launch files importable; may be called repeatedly.
 
-    The folder of the tables is the last on ``sys.path``: an installed module takes precedence over ours, except for
+    The folder of the tables is last on ``sys.path``: an installed module takes precedence over ours, except for
     `LAUNCH_MODULES`. Processes that launch files start find the stand-ins too.
     """
     modules.install()
@@ -44,7 +44,7 @@ def activate() -> None:
 class _InterfacesWhenAsked:
     """Makes modules such as ``std_msgs.msg`` importable on the first import that no other finder resolves.
 
-    It only implements the method of a finder: the base class takes long to import.
+    It implements the finder method without the base class, which is slow to import.
     """
 
     def find_spec(
@@ -53,13 +53,13 @@ class _InterfacesWhenAsked:
         path: Sequence[str] | None = None,
         target: ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """Return the module, if it contains interfaces."""
+        """Return the spec of a module that contains interfaces, or None."""
         if not _may_be_interfaces(fullname):
             return None
         from linkwright.standins import interfaces
 
         if any(isinstance(finder, interfaces.InterfaceFinder) for finder in sys.meta_path):
-            return None  # asked next
+            return None  # the import system asks that finder next
         interfaces.install()
         return interfaces.find_spec(fullname)
 
@@ -73,7 +73,7 @@ class _ModulesOfWorkspace:
         path: Sequence[str] | None = None,
         target: ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """Return the module, if a user's file imports it while a launch is read or runs, and a package has it."""
+        """Return the spec of a workspace module that a user's file imports during a launch, or None."""
         from linkwright.packages.active import active_finder
 
         finder = active_finder()
@@ -86,7 +86,7 @@ class _ModulesOfWorkspace:
 
 
 def _asking_file() -> Path | None:
-    """Return the user's file with the running import; None for a library, whose import may be optional."""
+    """Return the user's file that runs the current import; None for a library, whose import may be optional."""
     from linkwright.packages.programs.code_files import is_users
 
     frame = sys._getframe(2)
@@ -114,7 +114,7 @@ def _provide_for_processes() -> None:
 
 
 def _environment(base: Mapping[str, str]) -> Mapping[str, str]:
-    from linkwright.standins import process  # when the first process is started
+    from linkwright.standins import process  # imported when the first process is started
 
     return process.environment(base)
 

@@ -1,4 +1,4 @@
-"""Conversion between images of messages and numpy arrays for OpenCV (the API of ``cv_bridge``), without OpenCV."""
+"""Convert between image messages and numpy arrays in OpenCV's layout (the API of ``cv_bridge``), without OpenCV."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
 
 _PILLOW_FORMATS = {"jpg": "JPEG", "jpeg": "JPEG", "jpe": "JPEG", "jp2": "JPEG2000", "tif": "TIFF", "tiff": "TIFF"}
-_JPEG_QUALITY = 95  # OpenCV's numbers
+_JPEG_QUALITY = 95  # OpenCV's default
 
 
 class CvBridgeError(TypeError):
-    """An image cannot be converted; the text gives the reason."""
+    """Raised when an image cannot be converted; the message gives the reason."""
 
 
-def getCvType(encoding_name: str) -> int:  # cv_bridge's name
+def getCvType(encoding_name: str) -> int:  # name as in cv_bridge
     """Return OpenCV's type number for an encoding, such as 16 (``CV_8UC3``) for ``bgr8``.
 
     Raises:
@@ -45,7 +45,7 @@ class CvBridge:
     Attributes:
         cvtype_to_name: OpenCV's type number -> its name without ``CV_``, such as ``8UC3``.
         cvdepth_to_numpy_depth: OpenCV's depth number -> numpy's name.
-        numpy_type_to_cvtype: numpy's name of a depth -> OpenCV's, and vice versa.
+        numpy_type_to_cvtype: numpy's name of a depth -> OpenCV's name, and vice versa.
     """
 
     def __init__(self) -> None:
@@ -59,37 +59,37 @@ class CvBridge:
         self.numpy_type_to_cvtype |= dict(zip(DEPTHS, NUMPY_NAMES, strict=True))
 
     def dtype_with_channels_to_cvtype2(self, dtype: np.dtype[Any], n_channels: int) -> str:
-        """Return OpenCV's name of a type, such as ``8UC3``."""
+        """Return OpenCV's name of a pixel type, such as ``8UC3``."""
         return f"{self.numpy_type_to_cvtype[dtype.name]}C{n_channels}"
 
     def cvtype2_to_dtype_with_channels(self, cvtype: int) -> tuple[str, int]:
-        """Return numpy's name of the depth, and the number of channels."""
+        """Return numpy's name of the depth and the number of channels for OpenCV's type number."""
         depth, channels = depth_and_channels(cvtype)
         return self.numpy_type_to_cvtype[depth], channels
 
     def encoding_to_cvtype2(self, encoding: str) -> int:
-        """Return the type number of `getCvType`, with CvBridgeError for an unknown encoding."""
+        """Return OpenCV's type number for an encoding, as `getCvType` does; CvBridgeError for an unknown one."""
         try:
             return getCvType(encoding)
         except ConversionError as error:
             raise CvBridgeError(error) from error
 
     def encoding_to_dtype_with_channels(self, encoding: str) -> tuple[str, int]:
-        """Return numpy's name of the depth, and the number of channels, of an encoding."""
+        """Return numpy's name of the depth and the number of channels for an encoding."""
         return self.cvtype2_to_dtype_with_channels(self.encoding_to_cvtype2(encoding))
 
     def imgmsg_to_cv2(self, img_msg: Any, desired_encoding: str = "passthrough") -> NDArray[Any]:
-        """The pixels of a sensor_msgs/msg/Image.
+        """Convert a sensor_msgs/msg/Image to an array of pixels.
 
         Args:
             img_msg: the message.
-            desired_encoding: the encoding of the result; ``passthrough`` for that of the message.
+            desired_encoding: the encoding of the result; ``passthrough`` for the encoding of the message.
 
         Returns:
             Shape (height, width), or (height, width, channels) for several channels.
 
         Raises:
-            CvBridgeError: an encoding is unknown, or it cannot be converted into the other.
+            CvBridgeError: an encoding is unknown, or the image cannot be converted to the desired one.
             TypeError: the message has too few bytes.
         """
         name, channels = self.encoding_to_dtype_with_channels(img_msg.encoding)
@@ -101,7 +101,7 @@ class CvBridge:
         return self._converted(image, img_msg.encoding, desired_encoding)
 
     def cv2_to_imgmsg(self, cvim: Any, encoding: str = "passthrough", header: Any = None) -> Any:
-        """A sensor_msgs/msg/Image of an array.
+        """Convert an array to a sensor_msgs/msg/Image.
 
         Args:
             cvim: shape (height, width) or (height, width, channels).
@@ -109,8 +109,8 @@ class CvBridge:
             header: the header of the message, if given.
 
         Raises:
-            TypeError: it is not an array.
-            CvBridgeError: the array's type is not that of the encoding.
+            TypeError: `cvim` is not an array.
+            CvBridgeError: the array's type does not match the encoding.
         """
         _check_array(cvim)
         message = get_message("sensor_msgs/msg/Image")()
@@ -131,16 +131,18 @@ class CvBridge:
         return message
 
     def compressed_imgmsg_to_cv2(self, cmprs_img_msg: Any, desired_encoding: str = "passthrough") -> NDArray[Any]:
-        """The pixels of a sensor_msgs/msg/CompressedImage: grey, or blue, green and red, of 8 bits.
+        """Decode a sensor_msgs/msg/CompressedImage to 8-bit pixels: grey, or blue, green and red.
 
         Args:
             cmprs_img_msg: the message.
-            desired_encoding: the encoding of the result, converted from ``bgr8``; ``passthrough`` for that of the file.
+            desired_encoding: the encoding of the result, converted from ``bgr8``; ``passthrough`` for the encoding of
+                the
+                file.
 
         Raises:
             CvBridgeError: the data is not an image, or it cannot be converted.
         """
-        from PIL import Image, UnidentifiedImageError  # an extra, which other conversions do not need
+        from PIL import Image, UnidentifiedImageError  # an optional extra, needed only here
 
         try:
             with Image.open(io.BytesIO(bytes(cmprs_img_msg.data))) as opened:
@@ -152,15 +154,15 @@ class CvBridge:
         return self._converted(image, "mono8" if grey else "bgr8", desired_encoding)
 
     def cv2_to_compressed_imgmsg(self, cvim: Any, dst_format: str = "jpg") -> Any:
-        """A sensor_msgs/msg/CompressedImage of an array.
+        """Encode an array as a sensor_msgs/msg/CompressedImage.
 
         Args:
             cvim: shape (height, width), or (height, width, 3 or 4) with blue first, of 8 bits.
-            dst_format: the format, as the ending of a file name: ``jpg``, ``png``, ``bmp``, ``webp``, ``tiff``...
+            dst_format: the format, as a file suffix: ``jpg``, ``png``, ``bmp``, ``webp``, ``tiff``...
 
         Raises:
-            TypeError: it is not an array.
-            CvBridgeError: there is no such format, or it does not support such an image.
+            TypeError: `cvim` is not an array.
+            CvBridgeError: the format does not exist, or does not support such an image.
         """
         _check_array(cvim)
         message = get_message("sensor_msgs/msg/CompressedImage")()

@@ -21,13 +21,13 @@ _COLOUR = re.compile(r"(mono|rgb|bgr|rgba|bgra)(8|16)|bayer_(rggb|bggr|gbrg|grbg
 _PACKED_YUV = {"yuv422": "uyvy", "uyvy": "uyvy", "yuv422_yuy2": "yuyv", "yuyv": "yuyv"}
 _CHANNELS = {"mono": 1, "rgb": 3, "bgr": 3, "rgba": 4, "bgra": 4}
 
-# OpenCV's weights of colours for grey: ITU-R BT.601 in units of 1/32768.
+# OpenCV's weights of the colours in grey: ITU-R BT.601 in units of 1/32768.
 _GREY_SHIFT = 15
 _RED, _GREEN, _BLUE = 9798, 19235, 3735
 
 
 class ConversionError(RuntimeError):
-    """An encoding is unknown, or a conversion is not possible; the text gives the reason."""
+    """Raised when an encoding is unknown or a conversion is not possible; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,8 @@ class Encoding:
         name: its name in messages.
         depth: OpenCV's name of the depth.
         channels: the number of channels.
-        order: the channels: ``mono``, ``rgb``, ``bgra``, ``bayer_rggb``, ``yuyv``...; empty for plain numbers.
+        order: the order of the channels: ``mono``, ``rgb``, ``bgra``, ``bayer_rggb``, ``yuyv``...; empty for plain
+            numbers.
     """
 
     name: str
@@ -53,7 +54,7 @@ class Encoding:
 
 
 def encoding(name: str) -> Encoding:
-    """Return the properties of the encoding with a name.
+    """Return the encoding with the given name.
 
     Raises:
         ConversionError: there is no such encoding.
@@ -84,7 +85,7 @@ def converted(image: NDArray[Any], source: str, wanted: str) -> NDArray[Any]:
         wanted: the name of the target encoding.
 
     Raises:
-        ConversionError: one of them is unknown, or the conversion is not possible.
+        ConversionError: an encoding is unknown, or the conversion is not possible.
     """
     of, to = encoding(source), encoding(wanted)
     if source == wanted or not wanted:
@@ -123,7 +124,7 @@ def _in_order(image: NDArray[Any], of: Encoding, order: str) -> NDArray[Any]:
 
 
 def _as_colours(image: NDArray[Any], of: Encoding) -> NDArray[Any]:
-    """Return an image in a Bayer or YUV encoding as RGB; others stay unchanged."""
+    """Return an image in a Bayer or YUV encoding as RGB; other images are returned unchanged."""
     if of.order.startswith("bayer_"):
         if of.depth != "8U":
             raise ConversionError(f"Unsupported conversion from [{of.name}]: only mosaics of 8 bits are read")
@@ -134,7 +135,7 @@ def _as_colours(image: NDArray[Any], of: Encoding) -> NDArray[Any]:
 
 
 def _in_depth(image: NDArray[Any], of: Encoding, to: Encoding) -> NDArray[Any]:
-    """Return an image in another depth; conversions between unsigned 8 and 16 bits keep black and white."""
+    """Return an image converted to another depth; black and white are preserved between unsigned 8 and 16 bits."""
     dtype = np.dtype(NUMPY_NAMES[DEPTHS.index(to.depth)])
     if image.dtype == dtype:
         return np.array(image, order="C")

@@ -1,7 +1,7 @@
-"""Makes ``<package>.msg``, ``.srv`` and ``.action`` importable, as the packages that rosidl generates.
+"""Make ``<package>.msg``, ``.srv`` and ``.action`` importable, like the packages that rosidl generates.
 
-``from sensor_msgs.msg import JointState`` gives `linkwright.messages`' class, and so does ``from
-my_msgs.msg import Count`` for a package of the workspace, straight from its interface files, without a build. Other
+``from sensor_msgs.msg import JointState`` gives the class in `linkwright.messages`. ``from my_msgs.msg import Count``
+works for a package of the workspace as well: its classes are created from the interface files, without a build. Other
 finders come first, so installed interfaces take precedence.
 """
 
@@ -25,7 +25,7 @@ from linkwright.messages.message import ActionType, ServiceType
 
 
 class InterfaceFinder(MetaPathFinder):
-    """Finds interface packages, their modules ``msg``, ``srv`` and ``action``, and the submodules of these."""
+    """Finds interface packages, their modules ``msg``, ``srv`` and ``action``, and the submodules of those modules."""
 
     def find_spec(
         self,
@@ -33,7 +33,7 @@ class InterfaceFinder(MetaPathFinder):
         path: Sequence[str] | None = None,
         target: ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """Return the interface module with a name, or None."""
+        """Return the spec of an interface module, or None."""
         return find_spec(fullname)
 
 
@@ -51,7 +51,7 @@ class NamespaceFinder(MetaPathFinder):
         path: Sequence[str] | None = None,
         target: ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """The interface module in a namespace package, or None."""
+        """Return the spec of an interface module that is in a namespace package, or None."""
         package, _, kind = fullname.rpartition(".")
         if kind not in KINDS or getattr(sys.modules.get(package), "__file__", None) is not None:
             return None
@@ -66,7 +66,7 @@ def install() -> None:
 
 
 def find_spec(name: str) -> ModuleSpec | None:
-    """Return the interface module with a name (``std_msgs``, ``std_msgs.msg`` or ``std_msgs.msg._string``), or None."""
+    """Return the spec of an interface module (``std_msgs``, ``std_msgs.msg`` or ``std_msgs.msg._string``), or None."""
     package, *rest = name.split(".")
     if len(rest) > 2 or (rest and rest[0] not in KINDS) or not is_package_name(package):
         return None
@@ -88,7 +88,7 @@ def find_spec(name: str) -> ModuleSpec | None:
 
 
 def _interfaces(package: str, kind: str) -> list[str]:
-    """Return the names of a package's interfaces, without a search on disk for packages that come with Linkwright."""
+    """Return the names of a package's interfaces; packages that come with Linkwright are not searched for on disk."""
     shipped = [name.rpartition("/")[2] for name in catalogue.texts(package) if name.startswith(kind + "/")]
     return sorted(shipped) or [name.rpartition("/")[2] for name in LIBRARY.names(kind, package)]
 
@@ -133,7 +133,7 @@ class _KindLoader(Loader):
                 hint = did_you_mean(name, names) or "it has " + ", ".join(names)
                 message = f"cannot import name '{name}' from '{module.__name__}': {hint}"
                 raise ImportError(message, name=module.__name__) from None
-            except LinkwrightError as error:  # an error in the file: file and line suffice
+            except LinkwrightError as error:  # its text has the file and the line: no traceback
                 raise ImportError(str(error), name=module.__name__) from None
             setattr(module, name, found)
             return found
@@ -155,7 +155,7 @@ class _InterfaceLoader(Loader):
     def exec_module(self, module: ModuleType) -> None:
         try:
             interface = get_interface(self._type_name)
-        except LinkwrightError as error:  # an error in the file: reported at the import
+        except LinkwrightError as error:  # an error in the interface file, which the import reports
             raise ImportError(str(error), name=module.__name__) from None
         name = interface.__name__
         found = {name: interface}

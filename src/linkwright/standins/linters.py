@@ -1,6 +1,6 @@
 """The linters that the tests of a new Python package call: ``ament_flake8``, ``ament_pep257`` and ``ament_copyright``.
 
-The first two run flake8 and pydocstyle with the settings of ``ament_lint``. Where the program is not installed, the
+The first two run flake8 and pydocstyle with the settings of ``ament_lint``. If the program is not installed, the
 test that needs it is skipped, with a reason that names the program.
 """
 
@@ -30,16 +30,16 @@ _LICENSE = re.compile(
 
 
 def flake8(argv: Sequence[str] | None = None) -> int:
-    """Run flake8 on a package; return 0 when it finds nothing, else 1.
+    """Run flake8 on a package; return 0 if it finds nothing, else 1.
 
     Args:
-        argv: options and paths of the command ``ament_flake8``; the process's own if omitted.
+        argv: options and paths of the command ``ament_flake8``; the arguments of this process if omitted.
     """
     return flake8_with_errors(argv)[0]
 
 
 def flake8_with_errors(argv: Sequence[str] | None = None) -> tuple[int, list[str]]:
-    """Run flake8 on a package; return the exit status, and a line for each finding."""
+    """Run flake8 on a package; return the exit status and one line for each finding."""
     parser = _parser("ament_flake8")
     parser.add_argument("--config")
     parser.add_argument("--linelength", type=int)
@@ -56,10 +56,10 @@ def flake8_with_errors(argv: Sequence[str] | None = None) -> tuple[int, list[str
 
 
 def pep257(argv: Sequence[str] | None = None) -> int:
-    """Run pydocstyle on a package; return 0 when it finds nothing, else 1.
+    """Run pydocstyle on a package; return 0 if it finds nothing, else 1.
 
     Args:
-        argv: options and paths of the command ``ament_pep257``; the process's own if omitted.
+        argv: options and paths of the command ``ament_pep257``; the arguments of this process if omitted.
     """
     parser = _parser("ament_pep257")
     for name in ("--ignore", "--select", "--add-ignore", "--add-select"):
@@ -80,7 +80,7 @@ def copyright_headers(argv: Sequence[str] | None = None) -> int:
     """Check each source file for a copyright notice and a licence; return 0 if all have them, else 1.
 
     Args:
-        argv: paths and options of the command ``ament_copyright``; the process's own if omitted.
+        argv: paths and options of the command ``ament_copyright``; the arguments of this process if omitted.
     """
     files = [path for path in _files(_parser("ament_copyright").parse_args(argv)) if not _is_setup_of_package(path)]
     findings = []
@@ -108,7 +108,7 @@ def _more_codes(options: argparse.Namespace) -> Iterator[tuple[str, list[str]]]:
 
 
 def _files(options: argparse.Namespace) -> list[Path]:
-    """Return the source files below the paths that are not excluded, hidden, or beside a file AMENT_IGNORE."""
+    """Return the source files below the paths, except excluded files and hidden or AMENT_IGNORE folders."""
     excluded = {path.resolve() for path in options.exclude}
     found: set[Path] = set()
     for start in options.paths:
@@ -140,6 +140,6 @@ def _run(module: str, settings: Sequence[str], files: Sequence[Path]) -> tuple[i
 
 
 def _skip(reason: str) -> None:
-    import pytest  # pytest is running, because a test calls the linter
+    import pytest  # imported here because a test calls the linter, so pytest is running
 
     pytest.skip(reason)

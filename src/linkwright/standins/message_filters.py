@@ -24,26 +24,31 @@ class SimpleFilter:
     """The base of filters: an output that callbacks and other filters connect to.
 
     Attributes:
-        callbacks: each callback with the arguments that it gets after those of the filter, by its number.
+        callbacks: registration number -> the callback, and the arguments that follow the filter's output.
     """
 
     def __init__(self) -> None:
         self.callbacks: dict[int, tuple[Callable[..., object], tuple[Any, ...]]] = {}
 
     def registerCallback(self, cb: Callable[..., object], *args: Any) -> int:
-        """Register a callback that gets each output, followed by `args`; return its number in `callbacks`."""
+        """Register a callback for each output; return its number in `callbacks`.
+
+        Args:
+            cb: the callback, called with the output and then `args`.
+            args: further arguments of the callback.
+        """
         number = len(self.callbacks)
         self.callbacks[number] = (cb, args)
         return number
 
     def signalMessage(self, *msg: Any) -> None:
-        """Output a message."""
+        """Pass a message, or a set of messages, to the callbacks."""
         for callback, arguments in tuple(self.callbacks.values()):
             callback(*msg, *arguments)
 
 
 class Subscriber(SimpleFilter):
-    """A subscription as the first filter of a chain, with the attributes of the subscription.
+    """A subscription as the first filter of a chain; it also has the attributes of the subscription.
 
     Args:
         node: the node that subscribes.
@@ -60,15 +65,15 @@ class Subscriber(SimpleFilter):
         self.sub = node.create_subscription(msg_type, topic, self.callback, qos_profile, **arguments)
 
     def callback(self, msg: Any) -> None:
-        """Output a message."""
+        """Pass a received message to the callbacks."""
         self.signalMessage(msg)
 
     def getTopic(self) -> str:
-        """The name of the topic as it was given."""
+        """Return the name of the topic as given."""
         return self.topic
 
     def __getattr__(self, key: str) -> Any:
-        if key == "sub":  # the constructor failed
+        if key == "sub":  # the constructor failed before it set the attribute
             raise AttributeError(key)
         return getattr(self.sub, key)
 
@@ -79,7 +84,7 @@ class Cache(SimpleFilter):
     Args:
         f: the filter.
         cache_size: the number of messages to keep.
-        allow_headerless: whether to accept messages without a stamp, with their time of arrival.
+        allow_headerless: whether to accept messages without a stamp and use their time of arrival.
     """
 
     def __init__(self, f: SimpleFilter, cache_size: int = 1, allow_headerless: bool = False) -> None:
@@ -91,7 +96,7 @@ class Cache(SimpleFilter):
         self.connectInput(f)
 
     def connectInput(self, f: SimpleFilter) -> None:
-        """Cache the messages of a filter."""
+        """Cache the messages of another filter."""
         self.incoming_connection = f.registerCallback(self.add)
 
     def add(self, msg: Any) -> None:
@@ -110,11 +115,11 @@ class Cache(SimpleFilter):
         return [msg for msg, time in self._stamped_messages() if from_stamp <= time <= to_stamp]
 
     def getElemAfterTime(self, stamp: Time) -> Any:
-        """Return the first message that is not older than a time, or None."""
+        """Return the first message at or after a time, or None."""
         return next((msg for msg, time in self._stamped_messages() if time >= stamp), None)
 
     def getElemBeforeTime(self, stamp: Time) -> Any:
-        """Return the last message that is not newer than a time, or None."""
+        """Return the last message at or before a time, or None."""
         older = [msg for msg, time in self._stamped_messages() if time <= stamp]
         return older[-1] if older else None
 
@@ -145,7 +150,7 @@ class TimeSynchronizer(SimpleFilter):
         queue_size: the maximum number of queued messages of each filter.
 
     Attributes:
-        queues: the queued messages of each filter, by their stamps in nanoseconds.
+        queues: for each filter, stamp in nanoseconds -> the queued message.
     """
 
     def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
@@ -155,7 +160,7 @@ class TimeSynchronizer(SimpleFilter):
         self.connectInput(fs)
 
     def connectInput(self, fs: Sequence[SimpleFilter]) -> None:
-        """Synchronize the messages of these filters."""
+        """Synchronize the messages of the given filters."""
         self.queues: list[dict[int, Any]] = [{} for _ in fs]
         self.input_connections = [
             input_filter.registerCallback(self.add, queue, index)
@@ -163,7 +168,7 @@ class TimeSynchronizer(SimpleFilter):
         ]
 
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
-        """Add a message of one of the filters, and output the set that it completes."""
+        """Add a message of one of the filters, and output the set if this message completes one."""
         with self.lock:
             self._store(msg, my_queue, _time(msg.header.stamp).nanoseconds)
             common = set(self.queues[0]).intersection(*self.queues[1:])
@@ -184,7 +189,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         fs: the filters.
         queue_size: the maximum number of queued messages of each filter.
         slop: the maximum difference of the stamps in a set, in seconds.
-        allow_headerless: whether to accept messages without a stamp, with their time of arrival.
+        allow_headerless: whether to accept messages without a stamp and use their time of arrival.
         sync_arrival_time: whether to use the time of arrival for all messages.
     """
 
@@ -202,7 +207,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         self.sync_arrival_time = sync_arrival_time
 
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
-        """Add a message of one of the filters, and output the set of nearest messages that it completes."""
+        """Add a message of one of the filters, and output the set of nearest messages if it completes one."""
         if self.sync_arrival_time:
             time: Time | None = ROSClock().now()
         else:

@@ -1,8 +1,8 @@
-"""Creates the modules that the tables of names describe, so that ``from launch.actions import Shutdown`` works.
+"""Create the modules that the tables describe, so that ``from launch.actions import Shutdown`` works.
 
-`FOLDER` is a virtual folder for Python's path finder, with every package that has a table; ``FOLDER/launch`` contains
-the modules of ``launch``. Earlier entries of ``sys.path`` take precedence, package by package, and `pkgutil` lists the
-modules like files. A name is imported from the origin in the table on first use.
+`FOLDER` is a virtual folder for Python's path finder. It contains every package that has a table; ``FOLDER/launch``
+contains the modules of ``launch``. Earlier entries of ``sys.path`` take precedence, package by package, and `pkgutil`
+lists the modules like files. A name is imported on first use, from the origin that the table gives.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def install() -> None:
 
 
 def find_spec(name: str) -> ModuleSpec | None:
-    """Return the module with a name, or None when no table has it."""
+    """Return the spec of a module, or None if no table has the module."""
     found = table.find(name)
     if found is None:
         return None
@@ -48,29 +48,29 @@ def find_spec(name: str) -> ModuleSpec | None:
 
 
 def is_ours(module: ModuleType | None) -> bool:
-    """Return whether a module is one that was made here."""
+    """Return whether a module was created by this module."""
     return isinstance(getattr(getattr(module, "__spec__", None), "loader", None), _Loader)
 
 
 def _finder_of(path: str) -> _Finder:
-    """Return the finder of a folder; a path hook of Python."""
+    """Return the finder for a path entry; this function is a path hook of Python."""
     if path != FOLDER and not path.startswith(FOLDER + os.sep):
         raise ImportError(f"{path!r} holds no stand-ins", path=path)
     return _Finder(path[len(FOLDER) + 1 :].replace(os.sep, "."))
 
 
 class _Finder:
-    """Finds the modules of one package, or all packages."""
+    """Finds the modules of one package, or the packages that have a table."""
 
     def __init__(self, package: str) -> None:
         self._package = package
 
     def find_spec(self, name: str, target: ModuleType | None = None) -> ModuleSpec | None:
-        """Return the module with a name, or None."""
+        """Return the spec of a module, or None."""
         return find_spec(name)
 
     def iter_modules(self, prefix: str = "") -> Iterator[tuple[str, bool]]:
-        """Yield the names of the modules, each with whether it is a package, for `pkgutil`."""
+        """Yield the name of each module and whether it is a package, for `pkgutil`."""
         found = table.find(self._package)
         names = table.packages() if found is None else found.submodules
         for name in names:
@@ -85,11 +85,11 @@ class _Loader:
         self._described = described
 
     def homes(self, name: str) -> list[str]:
-        """Return the other modules with a name that the module lacks, for error messages."""
+        """Return the modules that have a name, for the error message of a module that lacks it."""
         return table.homes(name)
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:
-        """Return None, for Python's default module."""
+        """Return None, so that Python creates its default module."""
         return None
 
     def exec_module(self, module: ModuleType) -> None:
@@ -115,7 +115,9 @@ class _Loader:
         vars(module).update(own_names, __all__=described.public)
         for name in described.submodules:
             if name in described.names and described.names[name].origin != table.IMPORT:
-                # A function with the name of its module, which Python would replace by the module on import.
+                # The function has the same name as its submodule. Import the submodule first; otherwise a later import
+                # would replace the
+                # function with the module.
                 importlib.import_module(f"{described.name}.{name}")
                 setattr(module, name, value_of(described, name))
         if described.setup:
@@ -124,11 +126,11 @@ class _Loader:
 
 
 def value_of(module: table.Module, name: str) -> Any:
-    """Return the value of a name of a module.
+    """Return the value of a name in a module.
 
     Raises:
-        ImportError: the module that should have it cannot be imported.
-        AttributeError: that module does not have it.
+        ImportError: the module that defines the name cannot be imported.
+        AttributeError: that module does not define it.
     """
     found = module.names[name]
     if found.origin == table.IMPORT:

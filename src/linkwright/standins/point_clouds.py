@@ -1,4 +1,4 @@
-"""Point clouds as numpy arrays and back (the API of ``sensor_msgs_py.point_cloud2``)."""
+"""Convert between point clouds and numpy arrays (the API of ``sensor_msgs_py.point_cloud2``)."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ def dtype_from_fields(
     """Return the numpy type of a point.
 
     Args:
-        fields: the fields of a point (sensor_msgs/msg/PointField). One with a count of n becomes n fields.
+        fields: the fields of a point (sensor_msgs/msg/PointField). A field with a count of n becomes n fields.
         point_step: bytes from one point to the next; None for the size of the fields.
-        is_bigendian: the order of the bytes of numbers.
+        is_bigendian: whether numbers are big-endian.
     """
     order = ">" if is_bigendian else "<"
     names, formats, offsets = [], [], []
@@ -57,8 +57,8 @@ def read_points(
         cloud: sensor_msgs/msg/PointCloud2.
         field_names: the fields to read; None for all.
         skip_nans: whether to skip points with NaN in one of the fields.
-        uvs: the points to read: their indices, or pairs of column and row; None for all.
-        reshape_organized_cloud: whether to return an array of width by height for an organised cloud.
+        uvs: the points to read, as indices or as pairs of column and row; None for all.
+        reshape_organized_cloud: whether to return an array of width by height for an organized cloud.
 
     Raises:
         AssertionError: the cloud lacks one of the fields.
@@ -86,10 +86,10 @@ def read_points_numpy(
     uvs: Iterable[Any] | None = None,
     reshape_organized_cloud: bool = False,
 ) -> NDArray[Any]:
-    """Return the points of a cloud as an array with a column for each field; see `read_points`.
+    """Return the points of a cloud as an array with one column for each field; see `read_points`.
 
     Raises:
-        AssertionError: the fields are not all of one type, or one is missing.
+        AssertionError: the fields do not all have the same type, or one is missing.
     """
     points = read_points(cloud, field_names, skip_nans, uvs, reshape_organized_cloud)
     if len({points.dtype[name] for name in _names(points.dtype)}) > 1:
@@ -114,7 +114,9 @@ def create_cloud(
     Args:
         header: its stamp and frame (std_msgs/msg/Header).
         fields: the fields of a point (sensor_msgs/msg/PointField).
-        points: rows with a value for each field, or a structured array; one of width by height becomes organised.
+        points: rows with a value for each field, or a structured array; an array of width by height becomes an
+            organized
+            cloud.
         step: bytes from one point to the next; None for the size of the fields.
 
     Raises:
@@ -151,7 +153,7 @@ def _names(dtype: np.dtype[Any]) -> tuple[str, ...]:
 
 
 def _rows(cloud: Any, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """Return the points in sequence, without the padding at the ends of rows."""
+    """Return the points of a cloud in sequence, without the padding at the ends of rows."""
     data = np.frombuffer(cloud.data, np.uint8)
     width, height = cloud.width, cloud.height
     if height > 1 and cloud.row_step > width * dtype.itemsize:

@@ -1,4 +1,4 @@
-"""Commands and environments for users' programs, in which ``import rclpy`` finds ours if no real one is installed."""
+"""Commands and environments for users' programs: ``import rclpy`` finds ours if no real one is installed."""
 
 from __future__ import annotations
 
@@ -18,9 +18,11 @@ _NEEDED = ("linkwright", "numpy", "PIL", "yaml", "rosbags", "cyclonedds", "zenoh
 
 
 def standin_path() -> str:
-    """Return the folder for ``PYTHONPATH``.
+    """Return the folder to put on ``PYTHONPATH``.
 
-    It contains only a ``sitecustomize``, which also runs the next one, and ``linkwright_pytest``, which pytest loads.
+    It contains only a ``sitecustomize``, which runs the next ``sitecustomize`` too, and ``linkwright_pytest``, which
+    pytest
+    loads.
     """
     return str(_STARTUP)
 
@@ -29,13 +31,14 @@ def environment(base: Mapping[str, str] | None = None) -> dict[str, str]:
     """Return the environment in which a process and its children can import the stand-ins.
 
     Args:
-        base: the base environment; this process's own if omitted.
+        base: the base environment; the environment of this process if omitted.
 
     Returns:
-        A copy with ``PYTHONPATH`` led by `standin_path`, and ``LINKWRIGHT_SITE``: the folders of the packages that the
-        stand-ins need, for interpreters that do not have them. Calling it again changes nothing more. Sources of a
-        package that has a stand-in, such as a clone of rclpy in the workspace, are left out unless the user put them
-        there: they are not built, and would hide it.
+        A copy in which `standin_path` is first on ``PYTHONPATH``. ``LINKWRIGHT_SITE`` names the folders of the packages
+        that the stand-ins need, for interpreters that do not have them. Applying this function to its result changes
+        nothing. Source folders of a package that has a stand-in, such as a clone of rclpy in the workspace, are left
+        out
+        unless the user put them there: they are not built, and would hide the stand-in.
     """
     result = dict(os.environ if base is None else base)
     _leave_out_hiding_sources(result)
@@ -49,11 +52,12 @@ def python_command(arguments: Sequence[str], base: Mapping[str, str] | None = No
 
     Args:
         arguments: the arguments of the interpreter: a file, or ``-m`` and a module, and the program's arguments.
-        base: the environment of the program; this process's own if omitted.
+        base: the environment of the program; the environment of this process if omitted.
 
     Returns:
-        The arguments behind the interpreter of the active virtual environment, when that has the version of ours, else
-        behind ours: the compiled libraries that the stand-ins need are for one version.
+        The interpreter, followed by the arguments. It is the interpreter of the active virtual environment if its
+        version
+        is that of ours, otherwise ours: the compiled libraries that the stand-ins need are built for one version.
     """
     variables = os.environ if base is None else base
     return [_interpreter(variables), *arguments]

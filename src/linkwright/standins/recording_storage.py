@@ -1,4 +1,4 @@
-"""The data classes of recordings in ``rosbag2_py``: options, filters, and ``metadata.yaml``."""
+"""The data classes of ``rosbag2_py`` for recordings: options, filters, and ``metadata.yaml``."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwright.graph.time.values import ClockType, Duration, Time
 
 @dataclass(slots=True)
 class StorageOptions:
-    """The location and format of a recording, and its division into files."""
+    """The location and format of a recording, and how it is split into files."""
 
     uri: str
     storage_id: str = ""
@@ -35,7 +35,7 @@ class StorageOptions:
 
 @dataclass(slots=True)
 class ConverterOptions:
-    """The formats of messages; CDR is the only one."""
+    """The serialization formats of messages; CDR is the only one."""
 
     input_serialization_format: str = ""
     output_serialization_format: str = ""
@@ -43,7 +43,7 @@ class ConverterOptions:
 
 @dataclass(slots=True)
 class StorageFilter:
-    """The topics to read: those named and those that match a regular expression, or all by default."""
+    """A filter of topics: those named and those that match a regular expression, or all topics by default."""
 
     topics: list[str] = field(default_factory=list)
     topics_regex: str = ""
@@ -55,7 +55,7 @@ class StorageFilter:
     regex_to_exclude: str = ""
 
     def admits(self, topic: str) -> bool:
-        """Return whether a topic is read."""
+        """Return whether the filter includes a topic."""
         named, pattern = [*self.topics, *self.services_events], self.regex or self.topics_regex
         wanted = not (named or pattern) or topic in named or bool(pattern and re.search(pattern, topic))
         left_out = self.regex_to_exclude or self.topics_regex_to_exclude
@@ -65,7 +65,7 @@ class StorageFilter:
 
 
 class ReadOrderSortBy(enum.Enum):
-    """The sort keys of messages."""
+    """The keys by which messages can be sorted."""
 
     ReceivedTimestamp = 0
     PublishedTimestamp = 1
@@ -92,9 +92,9 @@ class MessageDefinition:
 
 @dataclass
 class TopicMetadata:
-    """A topic of a recording.
+    """The metadata of a topic in a recording.
 
-    Humble has no ``id``, and one text instead of a list of profiles, so all but the name are better given by keyword.
+    Humble has no ``id``, and has one text instead of a list of profiles, so pass everything except the name by keyword.
     """
 
     id: int = 0
@@ -116,13 +116,13 @@ class TopicMetadata:
             setattr(self, name, value)
 
     def equals(self, other: TopicMetadata) -> bool:
-        """Return whether another is the same."""
+        """Return whether the metadata of two topics are equal."""
         return self == other
 
 
 @dataclass(slots=True)
 class TopicInformation:
-    """A topic with the number of its messages."""
+    """A topic and the number of its messages."""
 
     topic_metadata: TopicMetadata
     message_count: int
@@ -161,7 +161,7 @@ class BagMetadata:
     ros_distro: str = ""
 
     def __repr__(self) -> str:
-        """The text of ``ros2 bag info``."""
+        """Return the metadata as ``ros2 bag info`` prints them."""
         start = self.starting_time.nanoseconds
         topics = [
             BagTopic(
@@ -175,17 +175,17 @@ class BagMetadata:
 
 
 class MetadataIo:
-    """Reads and writes ``metadata.yaml``, in its version 8, which Humble and later read."""
+    """Reads and writes ``metadata.yaml`` in version 8, which Humble and later can read."""
 
     def metadata_file_exists(self, uri: str) -> bool:
-        """Return whether a folder has the file."""
+        """Return whether a folder contains a ``metadata.yaml``."""
         return (Path(uri) / METADATA).exists()
 
     def read_metadata(self, uri: str) -> BagMetadata:
-        """Read the file in a folder.
+        """Read the ``metadata.yaml`` in a folder.
 
         Raises:
-            RuntimeError: there is none, or it has another structure.
+            RuntimeError: there is no such file, or its structure is invalid.
         """
         import yaml
 
@@ -200,22 +200,22 @@ class MetadataIo:
         return found
 
     def write_metadata(self, uri: str, metadata: BagMetadata) -> None:
-        """Write the file into a folder."""
+        """Write ``metadata.yaml`` into a folder."""
         from linkwright.bag.parts import write_information
 
         write_information(Path(uri), _information(metadata))
 
     def serialize_metadata(self, metadata: BagMetadata) -> str:
-        """Return the text of the file, without its root key."""
+        """Return the text of ``metadata.yaml``, without its root key."""
         import yaml
 
         return yaml.safe_dump(_information(metadata), sort_keys=False, allow_unicode=True)
 
     def deserialize_metadata(self, serialized_metadata: str) -> BagMetadata:
-        """Parse the text of `serialize_metadata`.
+        """Parse text from `serialize_metadata`.
 
         Raises:
-            RuntimeError: it has another structure.
+            RuntimeError: the structure of the text is invalid.
         """
         import yaml
 
@@ -226,22 +226,22 @@ class MetadataIo:
 
 
 def get_default_storage_id() -> str:
-    """Return the default format of written files."""
+    """Return the default storage format of new recordings."""
     return STORAGES[0]
 
 
 def to_rclcpp_qos_vector(serialized: str, version: int) -> list[QoSProfile]:  # noqa: ARG001 - rosbag2's signature
-    """Return the profiles in a text of ``metadata.yaml``, of any version."""
+    """Parse the QoS profiles in the text of a ``metadata.yaml`` of any version."""
     return from_text(serialized)
 
 
 def convert_rclcpp_qos_to_rclpy_qos(qos_input: QoSProfile) -> QoSProfile:
-    """Return the profile itself, which is rclpy's."""
+    """Return the profile unchanged, because it is already a profile of rclpy."""
     return qos_input
 
 
 def _metadata(found: Mapping[str, Any]) -> BagMetadata:
-    """Return the metadata in a ``metadata.yaml``; older versions lack keys."""
+    """Return the metadata in a parsed ``metadata.yaml``; older versions lack some keys."""
     topics = []
     for entry in found["topics_with_message_count"]:
         known = dict(entry["topic_metadata"])

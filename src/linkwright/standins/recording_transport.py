@@ -1,4 +1,5 @@
-"""Recording, playback and rewriting in programs (``rosbag2_py``'s ``Recorder``, ``Player``, ``bag_rewrite`` ...)."""
+"""Record, play and rewrite recordings from programs (``Recorder``, ``Player``, ``bag_rewrite`` ... of ``rosbag2_py``).
+"""
 
 from __future__ import annotations
 
@@ -32,7 +33,7 @@ _LOOK_SECONDS = 0.1
 
 
 class ServiceRequestsSource(enum.Enum):
-    """The source of introspection events for the playback of requests."""
+    """The source of the service requests that playback sends: introspection events of the service or of the client."""
 
     SERVICE_INTROSPECTION = 0
     CLIENT_INTROSPECTION = 1
@@ -40,7 +41,7 @@ class ServiceRequestsSource(enum.Enum):
 
 @dataclass(slots=True)
 class PlayOptions:
-    """The options of playback; options that only tune rosbag2 are accepted without effect."""
+    """The options of playback; options that only tune rosbag2 are accepted and ignored."""
 
     read_ahead_queue_size: int = 1000
     node_prefix: str = ""
@@ -71,7 +72,7 @@ class PlayOptions:
 
 @dataclass(slots=True)
 class RecordOptions:
-    """The options of recording; options that only tune rosbag2 are accepted without effect."""
+    """The options of recording; options that only tune rosbag2 are accepted and ignored."""
 
     all_topics: bool = False
     all_services: bool = False
@@ -106,7 +107,7 @@ class RecordOptions:
 
     @property
     def selection(self) -> TopicSelection:
-        """Return the selection of topics; services are given by their event topics, as in ``ros2bag``."""
+        """The selection of topics; services are selected by their event topics, as in ``ros2bag``."""
         return TopicSelection(
             everything=self.all_topics or self.all,
             names=_absolute(self.topics),
@@ -123,7 +124,7 @@ class RecordOptions:
 
 
 class _Transport:
-    """A node in its own context, which runs until it is done or cancelled."""
+    """A recorder or player: a node in a separate context, which runs until it is done or cancelled."""
 
     _cancelled: ClassVar[threading.Event]
 
@@ -131,7 +132,7 @@ class _Transport:
         cls._cancelled = threading.Event()
 
     def __init__(self, log_level: str = "info") -> None:
-        """Prepare.
+        """Prepare a run with the given log level.
 
         Raises:
             RuntimeError: there is no such level.
@@ -143,12 +144,12 @@ class _Transport:
 
     @classmethod
     def cancel(cls) -> None:
-        """End the run, from any thread."""
+        """End the run; may be called from any thread."""
         cls._cancelled.set()
 
     @contextmanager
     def _running(self, name: str, *arguments: str) -> Iterator[tuple[Node, Callable[[Callable[[], bool]], None]]]:
-        """Yield a node, and a function that runs its callbacks until a condition holds or it is cancelled.
+        """Yield a node and a function that runs its callbacks until a condition holds or the run is cancelled.
 
         Raises:
             RuntimeError: a recording cannot be opened or created.
@@ -169,7 +170,7 @@ class _Transport:
             raise RuntimeError(str(error)) from error
         finally:
             context.try_shutdown()
-            self._cancelled.clear()  # not at the start: it may be cancelled before its thread gets here
+            self._cancelled.clear()  # not cleared at the start: the run may be cancelled before its thread starts
 
 
 class Recorder(_Transport):
@@ -178,7 +179,7 @@ class Recorder(_Transport):
     def record(
         self, storage_options: StorageOptions, record_options: RecordOptions, node_name: str = "rosbag2_recorder"
     ) -> None:
-        """Record until `cancel` or Ctrl-C.
+        """Record until `cancel` is called or Ctrl-C is pressed.
 
         Raises:
             RuntimeError: the folder already exists, or there is no such storage.
@@ -216,7 +217,7 @@ class Player(_Transport):
         self._play(storage_options, play_options, None)
 
     def burst(self, storage_options: StorageOptions, play_options: PlayOptions, num_messages: int) -> None:
-        """Publish the first messages as fast as possible and wait, paused, until it is cancelled.
+        """Publish the first messages as fast as possible, then stay paused until cancelled.
 
         Raises:
             RuntimeError: see `play`.
@@ -246,7 +247,7 @@ class Reindexer:
         """Write the ``metadata.yaml`` of a recording.
 
         Raises:
-            RuntimeError: there are no files of a recording, or they are damaged.
+            RuntimeError: the folder has no files of a recording, or they are damaged.
         """
         try:
             reindex(Path(storage_options.uri))
@@ -255,10 +256,10 @@ class Reindexer:
 
 
 def bag_rewrite(input_options: Sequence[StorageOptions], output_config_file: str) -> None:
-    """Rewrite recordings, with the options in a YAML file with the key ``output_bags``.
+    """Rewrite recordings according to a YAML file with the key ``output_bags``.
 
     Raises:
-        RuntimeError: a recording cannot be read or created, or the file has another structure.
+        RuntimeError: a recording cannot be read or created, or the structure of the file is invalid.
     """
     if not input_options:
         raise RuntimeError("Must provide at least one input and one output bag to rewrite.")
@@ -289,7 +290,9 @@ def _how_to_play(options: PlayOptions, *, paused: bool) -> _HowToPlay:
 
 
 def _remapping(rule: str) -> list[str]:
-    """Return the words of a command line for a rule; rosbag2 accepts it with and without ``--ros-args --remap``."""
+    """Return the arguments for one remapping option; ``--ros-args`` and ``--remap``, which rosbag2 accepts too, are
+    dropped.
+    """
     return [] if rule.startswith("-") else ["--remap", rule]
 
 

@@ -35,7 +35,7 @@ _STEP_NS = NANOSECONDS_PER_SECOND
 
 
 class CompressionMode(enum.Enum):
-    """The unit of compression."""
+    """The unit of compression: a file or a message."""
 
     NONE = 0
     FILE = 1
@@ -44,7 +44,7 @@ class CompressionMode(enum.Enum):
 
 @dataclass
 class CompressionOptions:
-    """The compression options; zstd is the only format, and tuning options have no effect."""
+    """The compression options; zstd is the only format, and tuning options are ignored."""
 
     compression_format: str = ""
     compression_mode: CompressionMode = CompressionMode.NONE
@@ -54,17 +54,17 @@ class CompressionOptions:
 
 
 def compression_mode_from_string(name: str) -> CompressionMode:
-    """Return the mode with a name, in any case; NONE for an unknown name."""
+    """Return the mode with the given name, ignoring case; NONE for an unknown name."""
     return CompressionMode.__members__.get(name.upper(), CompressionMode.NONE)
 
 
 def compression_mode_to_string(mode: CompressionMode) -> str:
-    """Return the name of a mode."""
+    """Return the name of a compression mode."""
     return mode.name
 
 
 class SequentialReader:
-    """Reads messages in the order of their times."""
+    """Reads messages in the order of their timestamps."""
 
     def __init__(self) -> None:
         self._bag: BagReader | None = None
@@ -79,7 +79,7 @@ class SequentialReader:
         """Open a recording: a folder, or a single file.
 
         Raises:
-            RuntimeError: there is none, or it is damaged.
+            RuntimeError: there is no such recording, or it is damaged.
         """
         try:
             self._bag = BagReader(storage_options.uri)
@@ -89,11 +89,11 @@ class SequentialReader:
         self.seek(None)
 
     def open_uri(self, uri: str) -> None:
-        """Open a recording by its path alone."""
+        """Open a recording by its path, with default options."""
         self.open(StorageOptions(uri))
 
     def close(self) -> None:
-        """Close its files."""
+        """Close the files of the recording."""
         self._opened().close()
 
     def has_next(self) -> bool:
@@ -104,7 +104,7 @@ class SequentialReader:
         """Return the next message: topic, CDR bytes, and time of reception in nanoseconds since the epoch.
 
         Raises:
-            RuntimeError: there is none.
+            RuntimeError: there is no further message.
         """
         if self._next is None:
             raise RuntimeError("Bag is at end. No next message.")
@@ -113,11 +113,11 @@ class SequentialReader:
         return topic, data, stamp_ns
 
     def get_all_topics_and_types(self) -> list[TopicMetadata]:
-        """Return the topics of the recording, without filters."""
+        """Return the topics of the recording, regardless of filters."""
         return [topic_information.topic_metadata for topic_information in self.get_metadata().topics_with_message_count]
 
     def get_all_message_definitions(self) -> list[MessageDefinition]:
-        """Return the definitions of its topics' types, as far as it contains them."""
+        """Return the definitions of its topics' types that the recording contains."""
         return [MessageDefinition(*definition) for definition in self._opened().definitions]
 
     def get_metadata(self) -> BagMetadata:
@@ -154,19 +154,19 @@ class SequentialReader:
         )
 
     def set_filter(self, storage_filter: StorageFilter) -> None:
-        """Read only some topics from here on."""
+        """Restrict further reading to the topics of a filter."""
         self._filter = storage_filter
         self._continue()
 
     def reset_filter(self) -> None:
-        """Read all topics from here on."""
+        """Remove the filter, so that further reading returns all topics."""
         self.set_filter(StorageFilter())
 
     def set_read_order(self, read_order: ReadOrder) -> bool:
-        """Read forwards or backwards from here on; return whether that is possible.
+        """Set whether further reading goes forwards or backwards; return whether that is possible.
 
         Raises:
-            RuntimeError: the order is not that of the times at which messages were received.
+            RuntimeError: the order is not by the time of reception.
         """
         if read_order.sort_by is not ReadOrderSortBy.ReceivedTimestamp:
             raise RuntimeError(f"Not Implemented - {read_order.sort_by.name} read order")
@@ -175,7 +175,11 @@ class SequentialReader:
         return True
 
     def seek(self, timestamp: int | None) -> None:
-        """Continue with the first message at or after a time, in nanoseconds since the epoch; backwards, before it."""
+        """Continue at a time, in nanoseconds since the epoch.
+
+        The next message is the first one at or after this time, or, when reading backwards, the last one at or before
+        it.
+        """
         self._start_ns, self._last = timestamp, None
         self._continue()
 
@@ -185,7 +189,7 @@ class SequentialReader:
         return self._bag
 
     def _continue(self) -> None:
-        """Continue after the last message read."""
+        """Open the stream of messages that continues after the last message read."""
         bag = self._opened()
         topics = [topic.name for topic in bag.topics if self._filter.admits(topic.name)]
         if not topics:
@@ -215,7 +219,7 @@ class SequentialReader:
 
 
 def _backwards(bag: BagReader, topics: Collection[str], last_ns: int | None) -> Iterator[_Message]:
-    """Yield the messages of topics backwards, from the end or from the last one at or before a time."""
+    """Yield the messages of topics backwards, from the end or from the last message at or before a time."""
     stop_ns, step_ns = (bag.end_ns if last_ns is None else min(last_ns, bag.end_ns)) + 1, _STEP_NS
     while stop_ns > bag.start_ns:
         found = list(bag.messages(topics, stop_ns - step_ns, stop_ns))
@@ -225,7 +229,7 @@ def _backwards(bag: BagReader, topics: Collection[str], last_ns: int | None) -> 
 
 
 def _files(bag: BagReader) -> list[FileInformation]:
-    """Return the entries of ``metadata.yaml`` for several files; none if it is missing."""
+    """Return the file entries in the ``metadata.yaml`` of a recording; empty if that is missing."""
     metadata = MetadataIo()
     where = str(bag.path)
     return metadata.read_metadata(where).files if metadata.metadata_file_exists(where) else []
@@ -236,13 +240,13 @@ def _time(stamp_ns: int) -> Time:
 
 
 class SequentialWriter:
-    """Writes messages. The recording is complete once this is closed or garbage collected."""
+    """Writes messages; the recording is complete once the writer is closed or garbage collected."""
 
     def __init__(self) -> None:
         self._bag: BagWriter | None = None
 
     def open(self, storage_options: StorageOptions, converter_options: ConverterOptions | None = None) -> None:
-        """Start a recording.
+        """Create a recording.
 
         Raises:
             RuntimeError: the folder already exists, or there is no such storage.
@@ -258,7 +262,7 @@ class SequentialWriter:
         self._opened().close()
 
     def create_topic(self, topic_with_type: TopicMetadata) -> None:
-        """Add a topic, whose messages may follow.
+        """Add a topic, so that its messages can be written.
 
         Raises:
             RuntimeError: no package has its type.
@@ -272,12 +276,12 @@ class SequentialWriter:
             raise RuntimeError(str(error)) from error
 
     def write(self, topic_name: str, message: bytes, timestamp: int, send_timestamp: int | None = None) -> None:
-        """Add a message.
+        """Write a message.
 
         Args:
             topic_name: an existing topic.
             message: CDR bytes with their header, from ``serialize_message``.
-            timestamp: the time of reception, nanoseconds since the epoch.
+            timestamp: the time of reception, in nanoseconds since the epoch.
             send_timestamp: the time of publication; not recorded.
 
         Raises:
@@ -289,7 +293,7 @@ class SequentialWriter:
         bag.write(topic_name, timestamp, message)
 
     def take_snapshot(self) -> bool:
-        """Write the latest messages, which ``snapshot_mode`` keeps; return whether the mode is on.
+        """Write the latest messages, which ``snapshot_mode`` buffers; return whether that mode is on.
 
         Raises:
             RuntimeError: the file cannot be written.
@@ -300,7 +304,7 @@ class SequentialWriter:
             raise RuntimeError(str(error)) from error
 
     def split_bagfile(self) -> None:
-        """Continue in a new file.
+        """Start a new file for further messages.
 
         Raises:
             RuntimeError: the file cannot be written.
@@ -320,7 +324,7 @@ class SequentialWriter:
 
 
 class SequentialCompressionWriter(SequentialWriter):
-    """A `SequentialWriter` of compressed recordings; without options, it uses the format's own compression."""
+    """A `SequentialWriter` for compressed recordings; without options, it uses the storage format's own compression."""
 
     def __init__(self, compression_options: CompressionOptions | None = None) -> None:
         super().__init__()
@@ -333,13 +337,13 @@ class SequentialCompressionWriter(SequentialWriter):
 
 
 class Info:
-    """Answers questions about recordings."""
+    """Provides information on recordings."""
 
     def read_metadata(self, uri: str, storage_id: str = "") -> BagMetadata:
         """Return the metadata of a recording.
 
         Raises:
-            RuntimeError: there is none, or it is damaged.
+            RuntimeError: there is no such recording, or it is damaged.
         """
         reader = SequentialReader()
         reader.open(StorageOptions(uri))
@@ -350,10 +354,10 @@ class Info:
 
 
 class LocalMessageDefinitionSource:
-    """The definitions of known types."""
+    """Provides the definitions of known types."""
 
     def get_full_text(self, root_topic_type: str) -> MessageDefinition:
-        """Return the definition of a type; an empty one if it is not known."""
+        """Return the definition of a type; an empty definition if the type is not known."""
         try:
             return MessageDefinition(root_topic_type, "ros2msg", schema_of(root_topic_type), type_hash(root_topic_type))
         except LinkwrightError:
@@ -361,31 +365,31 @@ class LocalMessageDefinitionSource:
 
 
 def get_registered_readers() -> set[str]:
-    """Return the readable file formats."""
+    """Return the storage formats that can be read."""
     return set(STORAGES)
 
 
 def get_registered_compressors() -> set[str]:
-    """Return the compression formats."""
+    """Return the supported compression formats."""
     return {"zstd"}
 
 
 def get_registered_serializers() -> set[str]:
-    """Return the converters of messages: none, because CDR is the only format."""
+    """Return the message converters: an empty set, because CDR is the only format."""
     return set()
 
 
 def get_registered_writers() -> set[str]:
-    """Return the writable file formats."""
+    """Return the storage formats that can be written."""
     return set(STORAGES)
 
 
 def writer_for(options: StorageOptions, compression: str) -> BagWriter:
-    """Create a writer from its options.
+    """Create a writer from storage options.
 
     Raises:
         RuntimeError: there is no such storage, or the cache size for snapshots is not positive.
-        LinkwrightError: those of `BagWriter`.
+        LinkwrightError: see `BagWriter`.
     """
     storage = options.storage_id or STORAGES[0]
     if storage not in STORAGES:

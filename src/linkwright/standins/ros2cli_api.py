@@ -16,7 +16,7 @@ _POLL_SECONDS = 0.1
 
 
 class PackageNotFound(Exception):
-    """There is no such package."""
+    """Raised when there is no such package."""
 
     def __init__(self, package_name: str) -> None:
         super().__init__(package_name)
@@ -29,7 +29,7 @@ def get_package_names() -> KeysView[str]:
 
 
 def get_prefix_path(package_name: str) -> str | None:
-    """Return the prefix of a package, or None."""
+    """Return the install prefix of a package, or None."""
     try:
         return get_package_prefix(package_name)
     except PackageNotFoundError:
@@ -37,7 +37,7 @@ def get_prefix_path(package_name: str) -> str | None:
 
 
 def get_executable_paths(*, package_name: str) -> list[str]:
-    """Return the programs below ``lib`` of a package's prefix.
+    """Return the paths of the programs below ``lib`` in a package's prefix.
 
     Raises:
         PackageNotFound: there is no such package.
@@ -65,7 +65,7 @@ def get_topic_names(*, node: Any, include_hidden_topics: bool = False) -> list[s
 
 
 def get_msg_class(node: Any, topic: str, blocking: bool = False, include_hidden_topics: bool = False) -> Any:
-    """Return the class of a topic's messages; without a publisher, return None or wait for one.
+    """Return the message class of a topic; if the topic has no publisher, wait for one or return None.
 
     Raises:
         RuntimeError: the name is invalid, or the topic has several types.
@@ -96,7 +96,7 @@ def _get_msg_class(node: Any, topic: str, include_hidden_topics: bool) -> Any:
 
 
 def unsigned_int(string: str) -> int:
-    """Parse a non-negative number on a command line.
+    """Parse a non-negative integer from the command line.
 
     Raises:
         ArgumentTypeError: it is negative.
@@ -106,7 +106,7 @@ def unsigned_int(string: str) -> int:
 
 
 def positive_int(string: str) -> int:
-    """Parse a positive number on a command line; raises the same errors as `unsigned_int`."""
+    """Parse a positive integer from the command line; raises the same errors as `unsigned_int`."""
     return _at_least(1, string, "value must be a positive integer")
 
 

@@ -18,9 +18,9 @@ _KINDS = 3
 
 
 def samples(name: str) -> list[Message]:
-    """Return messages of a type of ``test_msgs``: with its defaults, with small values, and with extreme ones.
+    """Return sample messages of a type of ``test_msgs``: with default values, small values and extreme values.
 
-    A type without fields has only the first.
+    A type without fields has only the first of these.
 
     Args:
         name: the name of the type, such as ``BasicTypes``.

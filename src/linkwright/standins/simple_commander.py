@@ -1,4 +1,4 @@
-"""Goals for nav2 without callbacks (the API of ``nav2_simple_commander.robot_navigator``)."""
+"""Send goals to nav2 without callbacks (the API of ``nav2_simple_commander.robot_navigator``)."""
 
 from __future__ import annotations
 
@@ -49,15 +49,15 @@ _ACTIONS = {
 
 
 class BasicNavigator(Node):
-    """Sends tasks to nav2: each starts at once, and `isTaskComplete` returns whether it has ended.
+    """Sends tasks to nav2; each starts immediately, and `isTaskComplete` returns whether it has ended.
 
     Attributes:
         initial_pose: the given initial pose of the robot.
-        initial_pose_received: whether the localisation has responded.
+        initial_pose_received: whether the localization has responded.
         feedback: the latest feedback of the task.
         status: the status of the task (action_msgs/GoalStatus); None before it has ended.
         goal_handle: the goal handle of the task.
-        result_future: the future of its result.
+        result_future: the future of the task's result.
     """
 
     def __init__(self, node_name: str = "basic_navigator", namespace: str = "") -> None:
@@ -87,19 +87,19 @@ class BasicNavigator(Node):
         self._setInitialPose()
 
     def goToPose(self, pose: Any, behavior_tree: str = "") -> bool:
-        """Go to a pose; return whether the goal was accepted."""
+        """Navigate to a pose; return whether the goal was accepted."""
         return self._begin("navigate_to_pose", pose=pose, behavior_tree=behavior_tree)
 
     def goThroughPoses(self, poses: Any, behavior_tree: str = "") -> bool:
-        """Go through poses to the last of them; return whether the goal was accepted."""
+        """Navigate through poses to the last one; return whether the goal was accepted."""
         return self._begin("navigate_through_poses", poses=list(poses), behavior_tree=behavior_tree)
 
     def followWaypoints(self, poses: Any) -> bool:
-        """Go to each of some poses and execute the waypoint tasks there; return whether the goal was accepted."""
+        """Navigate to each pose and execute the waypoint tasks there; return whether the goal was accepted."""
         return self._begin("follow_waypoints", poses=list(poses))
 
     def followPath(self, path: Any, controller_id: str = "", goal_checker_id: str = "") -> bool:
-        """Drive along a path; return whether the goal was accepted."""
+        """Follow a path; return whether the goal was accepted."""
         return self._begin("follow_path", path=path, controller_id=controller_id, goal_checker_id=goal_checker_id)
 
     def spin(self, spin_dist: float = 1.57, time_allowance: float = 10) -> bool:
@@ -111,7 +111,7 @@ class BasicNavigator(Node):
         return self._straight("backup", backup_dist, backup_speed, time_allowance)
 
     def driveOnHeading(self, dist: float = 0.15, speed: float = 0.025, time_allowance: float = 10) -> bool:
-        """Drive straight on (metres, m/s); return whether the goal was accepted."""
+        """Drive straight ahead (metres, m/s); return whether the goal was accepted."""
         return self._straight("drive_on_heading", dist, speed, time_allowance)
 
     def assistedTeleop(self, time_allowance: float = 30) -> bool:
@@ -125,7 +125,7 @@ class BasicNavigator(Node):
             spin_until_future_complete(self, self.goal_handle.cancel_goal_async())
 
     def isTaskComplete(self) -> bool:
-        """Return whether the task has ended, or there is none; it waits for a tenth of a second."""
+        """Wait up to a tenth of a second; return whether the task has ended, or there is no task."""
         if self.result_future is None:
             return True
         spin_until_future_complete(self, self.result_future, timeout_sec=_STEP)
@@ -148,7 +148,7 @@ class BasicNavigator(Node):
     # --- waiting ------------------------------------------------------------------------------------------------------
 
     def waitUntilNav2Active(self, navigator: str = "bt_navigator", localizer: str = "amcl") -> None:
-        """Wait until nav2 is active and the robot is localised."""
+        """Wait until nav2 is active and the robot is localized."""
         if localizer != "robot_localization":
             self._waitForNodeToActivate(localizer)
         if localizer == "amcl":
@@ -159,26 +159,26 @@ class BasicNavigator(Node):
     # --- plans --------------------------------------------------------------------------------------------------------
 
     def getPath(self, start: Any, goal: Any, planner_id: str = "", use_start: bool = False) -> Any:
-        """Return a path to a pose (nav_msgs/Path), or None."""
+        """Plan a path to a pose; return it (nav_msgs/Path), or None if planning failed."""
         request = {"start": start, "goal": goal, "planner_id": planner_id, "use_start": use_start}
         return getattr(self._done("compute_path_to_pose", **request), "path", None)
 
     def getPathThroughPoses(self, start: Any, goals: Any, planner_id: str = "", use_start: bool = False) -> Any:
-        """Return a path through poses; see `getPath`."""
+        """Plan a path through poses; see `getPath`."""
         request = {"start": start, "goals": list(goals), "planner_id": planner_id, "use_start": use_start}
         return getattr(self._done("compute_path_through_poses", **request), "path", None)
 
     def smoothPath(
         self, path: Any, smoother_id: str = "", max_duration: float = 2.0, check_for_collision: bool = False
     ) -> Any:
-        """Return a smoothed path, or None if that failed."""
+        """Return a smoothed path, or None if smoothing failed."""
         request = {"path": path, "smoother_id": smoother_id, "max_smoothing_duration": _duration(max_duration)}
         return getattr(self._done("smooth_path", **request, check_for_collisions=check_for_collision), "path", None)
 
     # --- maps and costmaps --------------------------------------------------------------------------------------------
 
     def changeMap(self, map_filepath: str) -> bool:
-        """Load another map; return whether that was successful."""
+        """Load another map; return whether it was loaded."""
         answer = self._call("nav2_msgs/srv/LoadMap", "map_server/load_map", map_url=map_filepath)
         if answer.result != answer.RESULT_SUCCESS:
             self.error("Change map request failed!")
@@ -222,7 +222,7 @@ class BasicNavigator(Node):
         return self._begin(name, target=target, speed=float(speed), time_allowance=_duration(time_allowance))
 
     def _begin(self, name: str, **goal: Any) -> bool:
-        """Send a goal; whether it was accepted."""
+        """Send a goal; return whether it was accepted."""
         self.feedback, self.status, self.result_future = None, None, None
         self.goal_handle = self._sent(name, goal, self._feedbackCallback)
         if not self.goal_handle.accepted:
@@ -232,7 +232,7 @@ class BasicNavigator(Node):
         return True
 
     def _done(self, name: str, **goal: Any) -> Any:
-        """Return the result of a goal, or None if it was not reached."""
+        """Send a goal and wait; return its result, or None if it did not succeed."""
         handle = self._sent(name, goal, None)
         if not handle.accepted:
             self.error(f"{name} was rejected!")

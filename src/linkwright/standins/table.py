@@ -1,4 +1,4 @@
-"""The tables of the public names in modules of ROS packages, with the origin of our implementation of each.
+"""The tables of the public names in ROS modules and where we implement each of them.
 
 A table is a text file ``tables/<package>.txt``, in the order of the package's modules::
 
@@ -16,13 +16,14 @@ A table is a text file ``tables/<package>.txt``, in the order of the package's m
     setup: linkwright.some.module.function
     others: linkwright.some.module.function_of_a_name
 
-A line ``origin: names`` means that ``origin`` defines these names; in ``ours=theirs``, the origin's name is on the
-right. The origin may be another stand-in module. ``import`` names modules, submodules of the package first. ``since``
-names the distribution for names that ROS 2 Humble lacks. Names with a leading underscore and submodules that no line
-names are importable, but not in ``__all__``. ``setup`` is called after the module is created; ``others`` returns names
-that are not in the table.
+A line ``origin: names`` means that ``origin`` defines these names; in ``ours=theirs``, the name in the origin is on the
+right. The origin may be another stand-in module. ``import`` lists modules; a submodule of the package takes precedence.
+``since`` gives the distribution for names that ROS 2 Humble lacks. Names with a leading underscore, and submodules that
+no line names, are importable but not in ``__all__``. ``setup`` is called after the module is created; ``others``
+returns
+names that are not in the table.
 
-Programs wait for a table to be read, so it is read without a library, and only when its package is imported.
+Programs wait while a table is read, so it is read without a parsing library, and only when its package is imported.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ VALUE = "value"
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """The origin of a name of a module: ``from origin import name``, ``import name``, or ``value`` and a literal."""
+    """The origin of a name in a module: ``from origin import name``, ``import name``, or ``value`` and a literal."""
 
     origin: str
     name: str
@@ -79,18 +80,18 @@ class Module:
 
     @property
     def public(self) -> list[str]:
-        """Return the names that ``from module import *`` imports."""
+        """The names that ``from module import *`` imports."""
         return [name for name in self.names if not name.startswith("_")]
 
 
 def packages() -> list[str]:
-    """Return the names of all packages with a table."""
+    """Return the names of all packages that have a table."""
     return sorted(path.stem for path in FOLDER.glob("*.txt"))
 
 
 @cache
 def read(package: str) -> dict[str, Module]:
-    """Return the modules of a package by their full names; none for a package without a table."""
+    """Return the modules of a package, as full name -> module; empty for a package without a table."""
     try:
         text = (FOLDER / f"{package}.txt").read_text(encoding="utf-8")
     except OSError:
@@ -104,7 +105,7 @@ def find(module: str) -> Module | None:
 
 
 def homes(name: str) -> list[str]:
-    """Return the modules to import a name from, one for each package that has it, such as rclpy.node for Node."""
+    """Return the modules from which a name can be imported, one for each package, such as rclpy.node for Node."""
     found: dict[str, str] = {}
     for package in packages():
         having = [
@@ -113,17 +114,17 @@ def homes(name: str) -> list[str]:
             if name in module.names and module.names[name].origin.startswith("linkwright.") and "._" not in module.name
         ]
         having = [module for module in having if module.rpartition(".")[0] not in having]
-        if having:  # of several, the one with a similar name
+        if having:  # of several modules, prefer one whose name is part of the imported name
             last = {module: module.rpartition(".")[2].replace("_", "") for module in having}
             found[package] = min(having, key=lambda module: (last[module] not in name.lower(), len(module)))
     return sorted(found.values())
 
 
 def parse(text: str) -> dict[str, Module]:
-    """Read a table.
+    """Parse the text of a table.
 
     Raises:
-        ValueError: a line is invalid; the message quotes it.
+        ValueError: a line is invalid; the message quotes the line.
     """
     modules: dict[str, Module] = {}
     for line in _joined(text):

@@ -1,4 +1,4 @@
-"""Terminal colours for marks in texts, such as ``@{redf}`` (``osrf_pycommon.terminal_color``)."""
+"""Terminal colours for markup in texts, such as ``@{redf}`` (``osrf_pycommon.terminal_color``)."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _ANSI = _codes()
 
 
 class _Switch:
-    """The switch that makes marks become colours or vanish."""
+    """Whether markup is replaced by colours or by nothing."""
 
     is_on = True
 
@@ -53,26 +53,26 @@ def ansi(key: str) -> str:
 
 
 def get_ansi_dict() -> dict[str, str]:
-    """Return the escape sequences by name."""
+    """Return all escape sequences, by name."""
     return dict(_ANSI) if _Switch.is_on else dict.fromkeys(_ANSI, "")
 
 
 def enable_ansi_color_substitution_globally() -> None:
-    """Enable colours for marks."""
+    """Enable colours, so that markup is replaced by escape sequences."""
     _Switch.is_on = True
 
 
 def disable_ansi_color_substitution_globally() -> None:
-    """Disable colours, so that marks vanish."""
+    """Disable colours, so that markup is removed."""
     _Switch.is_on = False
 
 
 def format_color(msg: str) -> str:
-    """Return a text with its marks replaced, including short ones such as ``@!``, and a colour reset at the end.
+    """Replace the markup in a text, including short forms such as ``@!``, and reset the colour at the end.
 
     Raises:
-        KeyError: there is no such mark.
-        ValueError: an ``@`` does not start a mark; `sanitize` escapes them.
+        KeyError: there is no such colour or style.
+        ValueError: an ``@`` does not start any markup; `sanitize` escapes it.
     """
     for short, mark in _SHORT.items():
         msg = msg.replace(short, mark)
@@ -86,7 +86,7 @@ def print_color(*args: Any, **kwargs: Any) -> None:
 
 
 def sanitize(msg: str) -> str:
-    """Return a text without marks for `format_color`, by escaping them."""
+    """Escape a text so that `format_color` finds no markup in it."""
     return (
         msg.replace("@", "@@")
         .replace("@@!", "@{atexclamation}")
@@ -97,10 +97,10 @@ def sanitize(msg: str) -> str:
 
 
 def remove_ansi_escape_sequences(string: str) -> str:
-    """Return a text without escape sequences."""
+    """Return a text without its escape sequences."""
     return _ESCAPE_SEQUENCE.sub("", string)
 
 
 def split_by_ansi_escape_sequence(string: str, include_delimiters: bool = False) -> list[str]:
-    """Split a text at escape sequences, optionally including them."""
+    """Split a text at escape sequences, which are included in the result on request."""
     return re.split(f"({_ESCAPE_SEQUENCE.pattern})" if include_delimiters else _ESCAPE_SEQUENCE, string)

@@ -1,8 +1,8 @@
 """Rotations and homogeneous matrices with the names and conventions of the Python package ``tf_transformations``.
 
-Quaternions are x y z w. A matrix, array of shape (4, 4), takes column vectors. Euler angles, in radians, come with an
-axes code: ``s`` for static or ``r`` for rotating axes, and the three axes in the order of rotation; ``sxyz`` is ROS's
-roll, pitch and yaw.
+Quaternions are x y z w. A matrix is an array of shape (4, 4) and multiplies column vectors. Euler angles, in radians,
+have an axes code: ``s`` for static or ``r`` for rotating axes, followed by the three axes in the order of rotation;
+``sxyz`` is ROS's roll, pitch and yaw.
 """
 
 from __future__ import annotations
@@ -29,25 +29,25 @@ _AXES = {
 
 
 def identity_matrix() -> Matrix:
-    """Return the identity."""
+    """Return the identity matrix."""
     return np.eye(4)
 
 
 def translation_matrix(direction: ArrayLike) -> Matrix:
-    """Return the translation along a vector."""
+    """Return the matrix of a translation by a vector."""
     matrix = np.eye(4)
     matrix[:3, 3] = np.asarray(direction, dtype=float)[:3]
     return matrix
 
 
 def translation_from_matrix(matrix: ArrayLike) -> Vector:
-    """Return the translation part of a matrix: array, shape (3,)."""
+    """Return the translation part of a matrix, shape (3,)."""
     translation: Vector = np.array(matrix, dtype=float)[:3, 3].copy()
     return translation
 
 
 def rotation_matrix(angle: float, direction: ArrayLike, point: ArrayLike | None = None) -> Matrix:
-    """Return the rotation about an axis through a point, by default the origin."""
+    """Return the matrix of a rotation about an axis through a point, by default the origin."""
     matrix = quaternion_matrix(quaternion_about_axis(angle, direction))
     if point is not None:
         fixed = np.asarray(point, dtype=float)[:3]
@@ -56,7 +56,7 @@ def rotation_matrix(angle: float, direction: ArrayLike, point: ArrayLike | None 
 
 
 def rotation_from_matrix(matrix: ArrayLike) -> tuple[float, Vector, Vector]:
-    """Return the angle, the axis and a point (homogeneous) on the axis of a rotation.
+    """Return the angle and the axis of a rotation, and a (homogeneous) point on the axis.
 
     Raises:
         ValueError: the matrix is not a rotation.
@@ -72,7 +72,7 @@ def rotation_from_matrix(matrix: ArrayLike) -> tuple[float, Vector, Vector]:
 
 
 def scale_matrix(factor: float, origin: ArrayLike | None = None, direction: ArrayLike | None = None) -> Matrix:
-    """Return the scaling by a factor about a point, in all directions or in one."""
+    """Return the matrix that scales by a factor about a point, in all directions or in one direction."""
     matrix = np.eye(4)
     if direction is None:
         matrix[:3, :3] *= factor
@@ -86,12 +86,12 @@ def scale_matrix(factor: float, origin: ArrayLike | None = None, direction: Arra
 
 
 def reflection_matrix(point: ArrayLike, normal: ArrayLike) -> Matrix:
-    """Return the reflection at the plane through a point with a normal."""
+    """Return the matrix of the reflection across the plane with a given point and normal."""
     return scale_matrix(-1.0, point, normal)
 
 
 def euler_matrix(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Matrix:
-    """Return the rotation with Euler angles.
+    """Return the rotation matrix for Euler angles.
 
     Raises:
         ValueError: the axes code is invalid.
@@ -100,7 +100,7 @@ def euler_matrix(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Matrix:
 
 
 def euler_from_matrix(matrix: ArrayLike, axes: str = "sxyz") -> tuple[float, float, float]:
-    """Return the Euler angles of a rotation; in gimbal lock, the last angle is 0.
+    """Return the Euler angles of a rotation matrix; in gimbal lock, the last angle is 0.
 
     Raises:
         ValueError: the axes code is invalid.
@@ -121,7 +121,7 @@ def euler_from_quaternion(quaternion: Sequence[float], axes: str = "sxyz") -> tu
 
 
 def quaternion_from_euler(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Vector:
-    """Return the quaternion x y z w of Euler angles.
+    """Return the quaternion x y z w for Euler angles.
 
     Raises:
         ValueError: the axes code is invalid.
@@ -132,7 +132,7 @@ def quaternion_from_euler(ai: float, aj: float, ak: float, axes: str = "sxyz") -
 
 
 def quaternion_about_axis(angle: float, axis: ArrayLike) -> Vector:
-    """Return the quaternion x y z w of the rotation about an axis."""
+    """Return the quaternion x y z w of a rotation by an angle about an axis."""
     vector = np.asarray(axis, dtype=float)[:3]
     length = float(np.linalg.norm(vector))
     scale = math.sin(angle / 2.0) / length if length > _EPSILON else 0.0
@@ -140,7 +140,7 @@ def quaternion_about_axis(angle: float, axis: ArrayLike) -> Vector:
 
 
 def quaternion_matrix(quaternion: ArrayLike) -> Matrix:
-    """Return the rotation of a quaternion x y z w, which need not have unit length."""
+    """Return the rotation matrix of a quaternion x y z w, which does not need to have unit length."""
     x, y, z, w = (float(value) for value in np.asarray(quaternion, dtype=float)[:4])
     squared = x * x + y * y + z * z + w * w
     matrix = np.eye(4)
@@ -156,9 +156,12 @@ def quaternion_matrix(quaternion: ArrayLike) -> Matrix:
 
 
 def quaternion_from_matrix(matrix: ArrayLike) -> Vector:
-    """Return the unit quaternion x y z w of a rotation, with w not negative; the nearest for an inexact rotation."""
+    """Return the unit quaternion x y z w of a rotation matrix, with non-negative w.
+
+    For a matrix that is not exactly a rotation, it is the nearest rotation's quaternion.
+    """
     m = np.asarray(matrix, dtype=float)[:3, :3]
-    # The matrix whose eigenvector of the largest eigenvalue is the quaternion (Bar-Itzhack 2000), x y z w.
+    # The quaternion x y z w is the eigenvector of this matrix with the largest eigenvalue (Bar-Itzhack 2000).
     k = np.array(
         [
             [m[0, 0] - m[1, 1] - m[2, 2], m[0, 1] + m[1, 0], m[0, 2] + m[2, 0], m[2, 1] - m[1, 2]],
@@ -173,7 +176,7 @@ def quaternion_from_matrix(matrix: ArrayLike) -> Vector:
 
 
 def quaternion_multiply(quaternion1: ArrayLike, quaternion0: ArrayLike) -> Vector:
-    """Return the product x y z w: the rotation by `quaternion0`, then by `quaternion1`, about static axes."""
+    """Return the product x y z w, which rotates by `quaternion0`, then by `quaternion1`, about static axes."""
     return arrays.quaternion_multiply(quaternion1, quaternion0)
 
 
@@ -197,7 +200,7 @@ def quaternion_slerp(
         quat0: the start.
         quat1: the end.
         fraction: 0 at the start, 1 at the end.
-        spin: additional half turns.
+        spin: the number of additional half turns.
         shortestpath: whether to take the path with the smaller angle.
     """
     q0, q1 = unit_vector(np.asarray(quat0, dtype=float)[:4]), unit_vector(np.asarray(quat1, dtype=float)[:4])
@@ -213,7 +216,10 @@ def quaternion_slerp(
 
 
 def random_quaternion(rand: Sequence[float] | None = None) -> Vector:
-    """Return a uniformly random unit quaternion x y z w (Shoemake 1992), from three numbers from 0 to 1 if given."""
+    """Return a uniformly distributed random unit quaternion x y z w (Shoemake 1992).
+
+    It is computed from `rand`, three numbers between 0 and 1, if given.
+    """
     u, v, w = np.random.default_rng().random(3) if rand is None else rand
     outer, inner = math.sqrt(1.0 - u), math.sqrt(u)
     first, second = 2.0 * math.pi * v, 2.0 * math.pi * w
@@ -223,12 +229,12 @@ def random_quaternion(rand: Sequence[float] | None = None) -> Vector:
 
 
 def random_rotation_matrix(rand: Sequence[float] | None = None) -> Matrix:
-    """Return a uniformly random rotation, from three numbers from 0 to 1 if given."""
+    """Return a uniformly distributed random rotation matrix, computed from three numbers between 0 and 1 if given."""
     return quaternion_matrix(random_quaternion(rand))
 
 
 def random_vector(size: int) -> Vector:
-    """Return random numbers from 0 to 1."""
+    """Return a vector of random numbers between 0 and 1."""
     return np.random.default_rng().random(size)
 
 
@@ -239,7 +245,7 @@ def inverse_matrix(matrix: ArrayLike) -> Matrix:
 
 
 def concatenate_matrices(*matrices: ArrayLike) -> Matrix:
-    """Return the product of matrices from left to right."""
+    """Return the product of matrices, multiplied from left to right."""
     product = np.eye(4)
     for matrix in matrices:
         product = product @ np.asarray(matrix, dtype=float)
@@ -247,18 +253,18 @@ def concatenate_matrices(*matrices: ArrayLike) -> Matrix:
 
 
 def is_same_transform(matrix0: ArrayLike, matrix1: ArrayLike) -> bool:
-    """Return whether two matrices are the same transform, up to a factor."""
+    """Return whether two matrices describe the same transform, up to a scale factor."""
     m0, m1 = np.array(matrix0, dtype=float), np.array(matrix1, dtype=float)
     return bool(np.allclose(m0 / m0[3, 3], m1 / m1[3, 3]))
 
 
 def vector_norm(data: ArrayLike, axis: int | None = None) -> Any:
-    """Return the length of a vector, or of the vectors along an axis."""
+    """Return the length of a vector, or of each vector along an axis."""
     return np.linalg.norm(np.asarray(data, dtype=float), axis=axis)
 
 
 def unit_vector(data: ArrayLike, axis: int | None = None) -> Vector:
-    """Return the vector, or the vectors along an axis, normalized."""
+    """Return the normalized vector, or the normalized vectors along an axis."""
     vectors = np.array(data, dtype=float)
     lengths = np.linalg.norm(vectors, axis=axis, keepdims=axis is not None)
     unit: Vector = vectors / lengths
@@ -275,11 +281,11 @@ def compose_matrix(
     """Return the matrix that scales, shears, rotates (Euler angles ``sxyz``), translates and projects, in this order.
 
     Args:
-        scale: factors for x, y and z.
-        shear: factors for x-y, x-z and y-z.
-        angles: Euler angles.
-        translate: the vector.
-        perspective: the last row.
+        scale: the factors for x, y and z.
+        shear: the factors for x-y, x-z and y-z.
+        angles: the Euler angles.
+        translate: the translation vector.
+        perspective: the last row of the matrix.
     """
     matrix = np.eye(4)
     if perspective is not None:
@@ -315,7 +321,7 @@ def decompose_matrix(matrix: ArrayLike) -> tuple[Vector, list[float], list[float
         affine = m.copy()
         affine[3] = (0.0, 0.0, 0.0, 1.0)
         perspective = m[3] @ np.linalg.inv(affine)
-    # Rotation times upper triangle, with positive scales unless the matrix mirrors.
+    # The rotation times an upper triangular matrix with a positive diagonal, unless the matrix mirrors.
     rotation, triangle = np.linalg.qr(m[:3, :3])
     signs = np.sign(np.diag(triangle))
     rotation, triangle = rotation * signs, triangle * signs[:, None]
@@ -327,11 +333,11 @@ def decompose_matrix(matrix: ArrayLike) -> tuple[Vector, list[float], list[float
 
 
 def _read_axes(axes: str) -> tuple[bool, tuple[int, int, int]]:
-    """Return whether the axes rotate, and the equivalent order of static axes."""
+    """Return whether the axes rotate, and the three axes in the order for static axes."""
     if axes not in _AXES:
         raise ValueError(f"unknown axes '{axes}': write s or r and three axes, such as sxyz")
     a, b, c = ("xyz".index(letter) for letter in axes[1:])
-    # Rotations about rotating axes are those about static axes in reverse order.
+    # A rotation about rotating axes equals the rotation about static axes in reverse order.
     return (True, (c, b, a)) if axes[0] == "r" else (False, (a, b, c))
 
 
@@ -361,7 +367,7 @@ def _proper_angles(m: Matrix, a: int, b: int) -> tuple[float, float, float]:
 
 
 def _fixed_vector(matrix: Matrix) -> Vector:
-    """Return the real unit eigenvector of a matrix for eigenvalue 1."""
+    """Return the real unit eigenvector of a matrix for the eigenvalue 1."""
     values, vectors = np.linalg.eig(matrix)
     fixed = np.flatnonzero(np.abs(np.real(values) - 1.0) < 1e-8)
     if not fixed.size:

@@ -17,7 +17,7 @@ class ActionServer(action_server.ActionServer):
     """Executes the goals of an action."""
 
     def get_num_entities(self) -> NumberOfEntities:
-        """Return the number of its entities: a timer that drops old results, and three services."""
+        """Return the number of entities that the server uses: a timer that drops old results, and three services."""
         return NumberOfEntities(num_timers=1, num_services=3)
 
 
@@ -25,7 +25,8 @@ class ActionClient(action_client.ActionClient):
     """Sends goals to an action."""
 
     def get_num_entities(self) -> NumberOfEntities:
-        """Return the number of its entities: subscriptions to feedback and status, and three clients."""
+        """Return the number of entities that the client uses: subscriptions to feedback and status, and three clients.
+        """
         return NumberOfEntities(num_subscriptions=2, num_clients=3)
 
 
@@ -37,12 +38,12 @@ def get_action_names_and_types(node: Node) -> NamesAndTypes:
 def get_action_client_names_and_types_by_node(
     node: Node, remote_node_name: str, remote_node_namespace: str
 ) -> NamesAndTypes:
-    """Return the actions that a node sends goals to, with their types."""
+    """Return the actions that a node is a client of, with their types."""
     return node.context.graph.get_action_client_names_and_types_by_node(remote_node_name, remote_node_namespace)
 
 
 def get_action_server_names_and_types_by_node(
     node: Node, remote_node_name: str, remote_node_namespace: str
 ) -> NamesAndTypes:
-    """Return the actions that a node executes, with their types."""
+    """Return the actions that a node is a server of, with their types."""
     return node.context.graph.get_action_server_names_and_types_by_node(remote_node_name, remote_node_namespace)

@@ -32,7 +32,7 @@ _open: weakref.WeakSet[Context] = weakref.WeakSet()
 
 
 class Context:
-    """A graph and its nodes from initialisation to shutdown, each of which happens once.
+    """A graph with its nodes, from initialisation to shutdown; each context is initialised and shut down once.
 
     Args:
         graph: an existing graph, which is closed with the context.
@@ -69,7 +69,7 @@ class Context:
             return self._graph
 
     def wait_for_network(self) -> None:
-        """Wait once until the graph has joined the network; otherwise DDS would delay the first timers."""
+        """Wait, once, until the graph has joined the network; otherwise DDS would delay the first timers."""
         joining, self._joining = self._joining, None
         if joining is not None:
             joining.wait_until_ready(_LONGEST_JOINING_S)
@@ -82,7 +82,7 @@ class Context:
         Args:
             args: the command line; None for ``sys.argv``.
             initialize_logging: whether to apply the logging options of the command line.
-            domain_id: the network's domain; None for that of ROS_DOMAIN_ID, or else 0.
+            domain_id: the network's domain; None for the value of ROS_DOMAIN_ID, or 0 if that is not set.
 
         Raises:
             RuntimeError: the domain is negative, or the context was initialised before.
@@ -108,11 +108,11 @@ class Context:
         shut_down_on_signal(self)
 
     def ok(self) -> bool:
-        """Return whether it was initialised and not shut down since."""
+        """Return whether the context is initialised and not shut down."""
         return self._ok
 
     def get_domain_id(self) -> int:
-        """The network's domain.
+        """Return the network's domain.
 
         Raises:
             RuntimeError: the context is not initialised.
@@ -125,10 +125,12 @@ class Context:
         return int(text) if text.isdigit() else 0
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:
-        """Register a callback for the shutdown, called at once if it is shut down; bound methods are held weakly.
+        """Register a callback for the shutdown, and call it immediately if the context is already shut down.
+
+        Bound methods are held weakly.
 
         Raises:
-            TypeError: it is not callable.
+            TypeError: `callback` is not callable.
         """
         if not callable(callback):
             raise TypeError(f"callback should be a callable, got {type(callback)}")
@@ -140,10 +142,10 @@ class Context:
         callback()
 
     def shutdown(self) -> None:
-        """Shut down: executors stop spinning and the nodes leave the graph.
+        """Shut the context down: executors stop spinning, and the nodes leave the graph.
 
         Raises:
-            RclError: it was not initialised, or is already shut down, other than by a signal.
+            RclError: the context was not initialised, or was already shut down other than by a signal.
         """
         if not self._initialized:
             raise RclError("Context must be initialized before it can be shutdown")
@@ -153,19 +155,19 @@ class Context:
         self._end()
 
     def try_shutdown(self) -> None:
-        """Shut down, unless it is already shut down."""
+        """Shut the context down, unless it is already shut down."""
         if self._initialized and (self._ok or self._ended_by_signal):
             self.shutdown()
 
     def shutdown_by_signal(self) -> None:
-        """Stop the executors; the rest is left to `shutdown`, because a signal may arrive at any moment."""
+        """Stop the executors; `shutdown` does the rest, because a signal may arrive at any moment."""
         if self._ok:
             self._ended_by_signal = True
             self._ok = False
             self._notify()
 
     def destroy(self) -> None:
-        """Shut down, unless it is already shut down (rclpy)."""
+        """Shut the context down, unless it is already shut down (rclpy's name)."""
         self.try_shutdown()
 
     def __enter__(self) -> Self:

@@ -1,4 +1,4 @@
-"""The default context, which is used if none is given."""
+"""The default context, which is used when no context is given."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ class _Default:
 
 
 def get_default_context(*, shutting_down: bool = False) -> Context:
-    """Return the default context, or a new one after a shutdown.
+    """Return the default context; after a shutdown, a new one.
 
     Args:
-        shutting_down: whether to drop it, so that the next call returns a new one.
+        shutting_down: whether to drop the context, so that the next call returns a new one.
 
     Raises:
-        RclError: there is none to shut down.
+        RclError: there is no context to shut down.
     """
     with _lock:
         if shutting_down:
@@ -42,12 +42,12 @@ def get_default_context(*, shutting_down: bool = False) -> Context:
 
 
 def has_default_context() -> bool:
-    """Return whether the default context has been requested and not shut down since."""
+    """Return whether the default context has been requested and not been shut down since."""
     return _Default.context is not None
 
 
 def is_default(context: Context | None) -> bool:
-    """Return whether a context is the default one or None, which means the same."""
+    """Return whether a context is the default context, or None, which stands for it."""
     return context is None or context is _Default.context
 
 
@@ -55,7 +55,7 @@ def use_graph(graph: Graph, args: Sequence[str]) -> Context:
     """Initialise the default context with an existing graph, as `linkwright.testing` does; both are closed together.
 
     Args:
-        graph: the graph in which the nodes of the default context are.
+        graph: the graph for the nodes of the default context.
         args: the command line.
 
     Raises:
@@ -70,6 +70,6 @@ def use_graph(graph: Graph, args: Sequence[str]) -> Context:
 
 
 def check_initialized(context: Context, what: str) -> None:
-    """Raise NotInitializedError unless a context is ok."""
+    """Raise NotInitializedError unless a context is initialised and not shut down."""
     if not context.ok():
         raise NotInitializedError(what)

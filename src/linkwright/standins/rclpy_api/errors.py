@@ -1,4 +1,4 @@
-"""The exceptions of rclpy that `linkwright.graph` does not raise, and the public names of all."""
+"""The rclpy exceptions that `linkwright.graph` does not raise, and the public names of all rclpy exceptions."""
 
 from __future__ import annotations
 
@@ -24,30 +24,31 @@ _MODULES = ("rclpy.exceptions", "rclpy.executors", "rclpy._rclpy_pybind11")
 
 
 class NoTypeSupportImportedException(Exception):
-    """An interface class cannot be used."""
+    """Raised when an interface class cannot be used."""
 
     def __init__(self) -> None:
         super().__init__("no type_support imported")
 
 
 class RCLInvalidROSArgsError(RCLError):
-    """A ROS argument is malformed."""
+    """Raised when a ROS argument is malformed."""
 
 
 class UnknownROSArgsError(RuntimeError):
-    """There are unknown ROS arguments."""
+    """Raised when there are unknown ROS arguments."""
 
 
 class TimerCancelledError(RCLError):
-    """A cancelled timer was called."""
+    """Raised when a cancelled timer is called."""
 
 
 class UnsupportedEventTypeError(RCLError):
-    """The middleware does not support an event type."""
+    """Raised when the middleware does not support an event type."""
 
 
 def name_as_rclpy() -> None:
-    """Name the exceptions as in rclpy for tracebacks and logs: ``rclpy.exceptions.InvalidNodeNameException``."""
+    """Give the exceptions rclpy's names in tracebacks and logs, such as ``rclpy.exceptions.InvalidNodeNameException``.
+    """
     for module in _MODULES:
         described = table.find(module)
         assert described is not None

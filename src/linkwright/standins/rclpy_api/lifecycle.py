@@ -14,7 +14,7 @@ class LifecycleNode(LifecycleNodeMixin, Node):
 
     Args:
         node_name: its name.
-        enable_communication_interface: whether it has services for transitions and publishes them.
+        enable_communication_interface: whether the node has services for its transitions and publishes them.
         callback_group: the callback group of the services.
         arguments: further arguments of `Node`.
 

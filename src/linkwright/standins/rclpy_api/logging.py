@@ -18,17 +18,17 @@ _sinks: list[LogSink] = [print_to_console]
 
 
 def write(record: LogRecord) -> None:
-    """Write a record of any logger of the process."""
+    """Write a log record to the current sink."""
     _sinks[-1](record)
 
 
 def write_to(sink: LogSink) -> None:
-    """Redirect all loggers of the process from the console."""
+    """Redirect all loggers of the process from the console to a sink."""
     _sinks[1:] = [sink]
 
 
 def is_configured() -> bool:
-    """Return whether they are redirected from the console."""
+    """Return whether the loggers are redirected from the console."""
     return len(_sinks) > 1
 
 
@@ -37,7 +37,7 @@ root_logger = Logger("", write, time.time_ns, LEVELS)
 
 
 def get_logger(name: str) -> Logger:
-    """Return the logger with a name; dots separate levels.
+    """Return the logger with the given name; dots separate the levels of the hierarchy.
 
     Raises:
         ValueError: the name is empty.
@@ -48,17 +48,17 @@ def get_logger(name: str) -> Logger:
 
 
 def initialize() -> None:
-    """Reset all levels."""
+    """Reset the levels of all loggers."""
     LEVELS.reset()
 
 
 def shutdown() -> None:
-    """Write to the console again."""
+    """Direct all loggers to the console again."""
     del _sinks[1:]
 
 
 def clear_config() -> None:
-    """Reset the configuration."""
+    """Direct all loggers to the console again, and reset their levels."""
     shutdown()
     initialize()
 
@@ -79,7 +79,7 @@ def get_logger_level(name: str) -> LogLevel:
 
 
 def get_logging_severity_from_string(log_severity: str) -> LogLevel:
-    """Return the severity with a name.
+    """Return the severity with the given name.
 
     Raises:
         RuntimeError: there is no such severity.
@@ -91,7 +91,7 @@ def get_logging_severity_from_string(log_severity: str) -> LogLevel:
 
 
 def get_logging_directory() -> Path:
-    """Return the folder of log files: ROS_LOG_DIR, else ``log`` below ROS_HOME, else ``~/.ros/log``."""
+    """Return the folder of log files: ROS_LOG_DIR, otherwise ``log`` below ROS_HOME, otherwise ``~/.ros/log``."""
     folder = os.environ.get("ROS_LOG_DIR")
     if folder:
         return Path(folder).expanduser()

@@ -1,4 +1,4 @@
-"""Validation of names, which rclpy splits into modules."""
+"""Validation of names, which rclpy divides among several modules."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def validate_node_name(node_name: str) -> bool:
     """Return True for a valid node name.
 
     Raises:
-        InvalidNodeNameError: for any other.
+        InvalidNodeNameError: the name is not valid.
     """
     names.check_node_name(node_name)
     return True
@@ -23,7 +23,7 @@ def validate_namespace(namespace: str) -> bool:
     """Return True for a valid namespace.
 
     Raises:
-        InvalidNamespaceError: for anything else.
+        InvalidNamespaceError: the namespace is not valid.
     """
     problem = names.namespace_problem(namespace)
     if problem is not None:
@@ -35,7 +35,7 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
     """Return True for a valid topic or service name, which may be relative or private.
 
     Raises:
-        InvalidTopicNameError, InvalidServiceNameError: for any other.
+        InvalidTopicNameError, InvalidServiceNameError: the name is not valid.
     """
     _raise(name, names.topic_name_problem(name), is_service=is_service)
     return True
@@ -45,7 +45,7 @@ def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
     """Return True for a valid absolute name of a topic or service.
 
     Raises:
-        InvalidTopicNameError, InvalidServiceNameError: for any other.
+        InvalidTopicNameError, InvalidServiceNameError: the name is not valid.
     """
     problem = names.topic_name_problem(name)
     if problem is None and not name.startswith("/"):
@@ -55,7 +55,7 @@ def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
 
 
 def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> str:
-    """Return the absolute form of a topic name of a node.
+    """Return the absolute form of a node's topic name.
 
     Raises:
         ValueError: one of the names is not valid.
@@ -69,15 +69,15 @@ def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> s
 
 
 def topic_or_service_is_hidden(name: str) -> bool:
-    """Return whether tools hide a topic or service by default: a part of its name begins with ``_``."""
+    """Return whether tools hide a topic or service by default, because a part of its name begins with ``_``."""
     return names.is_hidden(name)
 
 
 def validate_parameter_name(name: str) -> bool:
-    """Return True for a valid parameter name: any except the empty one.
+    """Return True for a valid parameter name: any name that is not empty.
 
     Raises:
-        InvalidParameterException: for that.
+        InvalidParameterException: the name is empty.
     """
     if not name:
         raise InvalidParameterException(name)

@@ -1,4 +1,4 @@
-"""Nodes (rclpy ``node``): nodes of the graph that belong to a context and follow its command line."""
+"""Nodes (rclpy ``node``): nodes of the graph that belong to a context and apply its command line."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwright.standins.rclpy_api.defaults import check_initialized, get_defaul
 def _overrides(
     node_name: str, namespace: str, remappings: Sequence[tuple[str, str]], command_lines: Sequence[RosArguments]
 ) -> dict[str, Any]:
-    """Return the parameter overrides of command lines for a node; the first command line takes precedence."""
+    """Return the parameter overrides for a node from command lines, of which the first takes precedence."""
     rules = Remappings(remappings)
     full_name = join(absolute_namespace(rules.namespace(namespace, node_name)), rules.node_name(node_name))
     overrides: dict[str, Any] = {}
@@ -38,15 +38,15 @@ class Node(GraphNode):
         use_global_arguments: whether the command line of the context applies to it.
         enable_rosout: whether it publishes its log messages on ``/rosout``.
         rosout_qos_profile: the QoS profile of ``/rosout``.
-        start_parameter_services: whether others can read and set its parameters.
-        parameter_overrides: values that replace defaults and those of the command lines.
+        start_parameter_services: whether other nodes can read and set its parameters.
+        parameter_overrides: values that take precedence over defaults and over the command lines.
         allow_undeclared_parameters: whether parameters can be set and read without being declared.
         automatically_declare_parameters_from_overrides: whether all parameters with overrides are declared.
-        enable_logger_service: whether others can read and set the levels of its loggers.
+        enable_logger_service: whether other nodes can read and set the levels of its loggers.
 
     Raises:
         NotInitializedException: the context is not initialised.
-        InvalidNodeNameError, InvalidNamespaceError: the name is not valid.
+        InvalidNodeNameError, InvalidNamespaceError: the name or the namespace is not valid.
     """
 
     def __init__(
@@ -65,7 +65,7 @@ class Node(GraphNode):
         automatically_declare_parameters_from_overrides: bool = False,
         enable_logger_service: bool = False,
     ) -> None:
-        # The name is mangled, because users' nodes have attributes too.
+        # The name is mangled so that it cannot collide with attributes of users' nodes.
         self.__context = get_default_context() if context is None else context
         check_initialized(self.__context, "cannot create node")
         own = read_ros_arguments(cli_args or [])

@@ -1,4 +1,4 @@
-"""Parameters as messages, from text and from files (rclpy ``parameter``)."""
+"""Read parameters from messages, text and files (rclpy ``parameter``)."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
 
 class ParameterService(ParameterServices):
-    """The services by which other nodes read and set the parameters of a node."""
+    """The services through which other nodes read and set the parameters of a node."""
 
     def __init__(self, node: Node) -> None:
         super().__init__(node, node.get_name(), node.create_service)
 
 
 def get_parameter_value(string_value: str) -> Any:
-    """Convert a text to a parameter's value (rcl_interfaces/msg/ParameterValue).
+    """Convert text to the value of a parameter (rcl_interfaces/msg/ParameterValue).
 
-    It is read as YAML; a result that is invalid for a parameter stays a string.
+    The text is read as YAML. If the result is not a valid parameter value, the text itself becomes a string value.
     """
     if not string_value.strip():
         return Parameter("", value=string_value).get_parameter_value()
@@ -39,19 +39,19 @@ def parameter_dict_from_yaml_file(
     target_nodes: Sequence[str] | None = None,
     namespace: str = "",
 ) -> dict[str, Any]:
-    """Return the parameters in a file, as rcl_interfaces/msg/Parameter by name.
+    """Return the parameters in a file, as name -> rcl_interfaces/msg/Parameter.
 
     Args:
         parameter_file: the file.
-        use_wildcard: whether those of ``/**`` count.
+        use_wildcard: whether to include the parameters of ``/**``.
         target_nodes: the full names of the nodes to read parameters for; None for all.
-        namespace: a prefix of each name, with a dot.
+        namespace: a prefix of each parameter name, followed by a dot.
 
     Raises:
         RuntimeError: none of the nodes is in the file.
         LinkwrightError: the file cannot be read.
     """
-    # Node names may omit the leading slash, here and in the file.
+    # Node names may omit the leading slash, both here and in the file.
     rules: dict[str, dict[str, Any]] = {}
     for pattern, values in read_parameter_file(parameter_file):
         rules.setdefault(_absolute(pattern), {}).update(values)

@@ -1,4 +1,4 @@
-"""Older names of policies, which many programs still use, and overrides from parameters (rclpy ``qos``)."""
+"""Deprecated policy names, which many programs still use, and overrides from parameters (rclpy ``qos``)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwright.graph.qos.profile import (
 
 
 class _OldName:
-    """A policy's deprecated name, which returns the value with a warning about the new name."""
+    """A deprecated name of a policy value; reading it returns the value and warns of the new name."""
 
     def __init__(self, policy: type[QoSPolicyEnum], old: str, new: str) -> None:
         self._policy = policy
@@ -32,7 +32,8 @@ class _OldName:
 
 
 def add_old_names() -> None:
-    """Add the deprecated names of values, such as ``ReliabilityPolicy.RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT``."""
+    """Add the deprecated names of policy values, such as ``ReliabilityPolicy.RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT``.
+    """
     for policy in (DurabilityPolicy, HistoryPolicy, LivelinessPolicy, ReliabilityPolicy):
         word = policy.__name__.removesuffix("Policy").upper()
         for value in policy:
@@ -44,13 +45,13 @@ def add_old_names() -> None:
 def declare_qos_parameters(
     entity_type: type, node: Any, topic_name: str, qos: QoSProfile, options: QoSOverridingOptions
 ) -> QoSProfile:
-    """Declare the parameters that override the profile of a publisher or subscription, and apply them to it.
+    """Declare the parameters that override the profile of a publisher or subscription, and apply them to the profile.
 
     Args:
         entity_type: ``Publisher`` or ``Subscription``.
-        node: declares them.
+        node: the node that declares them.
         topic_name: the absolute name of the topic.
-        qos: the profile; it is changed.
+        qos: the profile, which is modified.
         options: the policies that may be overridden.
 
     Returns:

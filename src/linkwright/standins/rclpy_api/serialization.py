@@ -1,4 +1,4 @@
-"""Messages as bytes (rclpy ``serialization``)."""
+"""Serialize and deserialize messages (rclpy ``serialization``)."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ M = TypeVar("M")
 
 
 def serialize_message(message: Any) -> bytes:
-    """Serialize a message to CDR with its header.
+    """Serialize a message to CDR, including the header.
 
     Raises:
-        TypeError: it is not a message.
+        TypeError: `message` is not a message.
     """
     if not hasattr(message, "TYPE_NAME"):
         raise TypeError(f"{type(message)} is not the class of a message")
@@ -24,8 +24,8 @@ def deserialize_message(serialized_message: bytes, message_type: type[M]) -> M:
     """Deserialize a message.
 
     Raises:
-        TypeError: the type is not that of a message.
-        LinkwrightError: the bytes are not such a message.
+        TypeError: `message_type` is not a message class.
+        LinkwrightError: the bytes are not a message of this type.
     """
     if not hasattr(message_type, "TYPE_NAME"):
         raise TypeError(f"{message_type} is not the class of a message")

@@ -59,11 +59,13 @@ def init(
     Args:
         args: the command line; None for ``sys.argv``.
         context: the context; None for the default context.
-        domain_id: the network's domain; None for that of ROS_DOMAIN_ID, or else 0.
-        signal_handler_options: the signals that shut it down; None for all with the default context, else none.
+        domain_id: the network's domain; None for the value of ROS_DOMAIN_ID, or 0 if that is not set.
+        signal_handler_options: the signals that shut the context down; None for all signals with the default context,
+            and
+            for no signals with another.
 
     Raises:
-        RuntimeError: it is already initialised.
+        RuntimeError: the context is already initialised.
     """
     chosen = get_default_context() if context is None else context
     if signal_handler_options is None:
@@ -83,10 +85,10 @@ def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None 
 
     Args:
         context: the context; None for the default context.
-        uninstall_handlers: whether to restore the previous signal handlers; None for yes with the default context.
+        uninstall_handlers: whether to restore the previous signal handlers; None to do so for the default context only.
 
     Raises:
-        RclError: it is not initialised, or already shut down.
+        RclError: the context is not initialised, or already shut down.
     """
     _end_global_executor(context)
     default = is_default(context)
@@ -97,7 +99,7 @@ def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None 
 
 
 def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
-    """Shut a context down, if it is up."""
+    """Shut a context down, unless it is not initialised or already shut down."""
     default = is_default(context)
     if default and not has_default_context():
         return
@@ -122,7 +124,7 @@ def create_node(node_name: str, **arguments: Any) -> Node:
     """Create a node; see `Node` for the arguments.
 
     Raises:
-        NotInitializedError: its context is not initialised.
+        NotInitializedError: the node's context is not initialised.
     """
     return Node(node_name, **arguments)
 
@@ -133,14 +135,14 @@ def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: floa
     Args:
         node: the node.
         executor: the executor; None for the global executor.
-        timeout_sec: the longest wait, in seconds; no limit when None.
+        timeout_sec: the longest wait, in seconds; None for no limit.
     """
     runner = get_global_executor() if executor is None else executor
     added = runner.add_node(node)
     try:
         runner.spin_once(timeout_sec=timeout_sec)
     finally:
-        # Within a callback of the node, it already belongs to the executor, and must stay there.
+        # During a callback of the node, the node already belongs to the executor and must stay there.
         if added is not False:
             runner.remove_node(node)
 
@@ -157,7 +159,7 @@ def spin(node: Node, executor: Executor | None = None) -> None:
     try:
         runner.spin()
     finally:
-        # Within a callback of the node, it already belongs to the executor, and must stay there.
+        # During a callback of the node, the node already belongs to the executor and must stay there.
         if added is not False:
             runner.remove_node(node)
 
@@ -171,14 +173,14 @@ def spin_until_future_complete(
         node: the node.
         future: the future to wait for.
         executor: the executor; None for the global executor.
-        timeout_sec: the longest wait, in seconds; no limit when None.
+        timeout_sec: the longest wait, in seconds; None for no limit.
     """
     runner = get_global_executor() if executor is None else executor
     added = runner.add_node(node)
     try:
         runner.spin_until_future_complete(future, timeout_sec)
     finally:
-        # Within a callback of the node, it already belongs to the executor, and must stay there.
+        # During a callback of the node, the node already belongs to the executor and must stay there.
         if added is not False:
             runner.remove_node(node)
 

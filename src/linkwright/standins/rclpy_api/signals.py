@@ -27,14 +27,15 @@ _previous: dict[int, Any] = {}
 
 
 def shut_down_on_signal(context: Any) -> None:
-    """Call ``shutdown_by_signal`` of a context on a signal."""
+    """Have a context's ``shutdown_by_signal`` called on a signal."""
     _on_signal.add(context)
 
 
 def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
-    """Shut all contexts down on one of the signals, then run the previous handler.
+    """Install handlers for signals: they shut all contexts down, then call the previous handler.
 
-    So Ctrl-C still raises KeyboardInterrupt. Outside the main thread, which Python requires, nothing is done.
+    Ctrl-C therefore still raises KeyboardInterrupt. Outside the main thread nothing is done, because Python installs
+    handlers only there.
     """
     if threading.current_thread() is not threading.main_thread():
         return
@@ -44,7 +45,7 @@ def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions
 
 
 def uninstall_signal_handlers() -> None:
-    """Restore the previous handlers."""
+    """Restore the previous signal handlers."""
     if threading.current_thread() is not threading.main_thread():
         return
     for number in tuple(_previous):
@@ -54,7 +55,7 @@ def uninstall_signal_handlers() -> None:
 
 
 def get_current_signal_handlers_options() -> SignalHandlerOptions:
-    """Return the handled signals."""
+    """Return which signals are handled."""
     return SignalHandlerOptions(sum(option for number, option in _OPTIONS.items() if number in _previous))
 
 

@@ -8,17 +8,17 @@ _SIZE = 32
 
 
 class TypeHashDictionary(TypedDict):
-    """The parts of a hash."""
+    """The parts of a type hash."""
 
     version: int
     value: bytes
 
 
 class TypeHash:
-    """A hash with the version of its rules; version -1 for none.
+    """A type hash and the version of the rules by which it was computed; version -1 means no hash.
 
     Raises:
-        AssertionError: the value has not 32 bytes.
+        AssertionError: the value does not have 32 bytes.
     """
 
     __slots__ = ("_value", "_version")
@@ -29,7 +29,7 @@ class TypeHash:
 
     @property
     def version(self) -> int:
-        """The version of the rules."""
+        """The version of the hashing rules."""
         return self._version
 
     @version.setter

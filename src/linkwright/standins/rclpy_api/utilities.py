@@ -19,19 +19,19 @@ def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
 
 
 def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
-    """Convert a timeout to nanoseconds; None and negative numbers mean no limit and give -1."""
+    """Convert a timeout to nanoseconds; return -1, no limit, for None and negative numbers."""
     if timeout_sec is None or timeout_sec < 0:
         return -1
     return int(float(timeout_sec) * NANOSECONDS_PER_SECOND)
 
 
 def get_rmw_implementation_identifier() -> str:
-    """Return the name of the middleware that ours is compatible with."""
+    """Return the name of the middleware that Linkwright's middleware is compatible with."""
     from linkwright.wire.joining import middleware
 
     return middleware()
 
 
 def get_available_rmw_implementations() -> set[str]:
-    """Return the names of the available middlewares."""
+    """Return the names of the available middleware implementations."""
     return {get_rmw_implementation_identifier()}

@@ -7,7 +7,7 @@ from dataclasses import astuple, dataclass
 
 @dataclass
 class NumberOfEntities:
-    """The numbers of entities of each kind; counts can be added."""
+    """The number of entities of each kind; objects of this class can be added."""
 
     num_subscriptions: int = 0
     num_guard_conditions: int = 0

@@ -1,4 +1,4 @@
-"""Waits for one message (rclpy ``wait_for_message``)."""
+"""Wait for a single message (rclpy ``wait_for_message``)."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ def wait_for_message(
     qos_profile: QoSProfile | int = DEFAULT_QOS,
     time_to_wait: float = -1,
 ) -> tuple[bool, Any]:
-    """Wait for the next message of a topic, whether or not the node is spun.
+    """Wait for the next message of a topic, whether or not the node is spinning.
 
     Args:
         msg_type: the message class.
         node: the node that subscribes.
         topic: the topic.
-        args: Humble's fourth and only positional argument: `time_to_wait`.
+        args: `time_to_wait`, which Humble accepts as the fourth positional argument.
         qos_profile: the requested profile.
-        time_to_wait: the longest wait, in seconds; no limit when negative.
+        time_to_wait: the longest wait, in seconds; negative for no limit.
 
     Returns:
         Whether a message arrived, and the message or None.

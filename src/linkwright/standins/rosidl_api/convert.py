@@ -1,4 +1,4 @@
-"""Messages as dictionaries, YAML and CSV."""
+"""Convert messages to dictionaries, YAML and CSV."""
 
 from collections import OrderedDict
 from typing import Any
@@ -17,7 +17,7 @@ def message_to_yaml(
     no_str: bool = False,
     flow_style: bool = False,
 ) -> str:
-    """Convert a message to YAML; raw bytes become YAML's ``!!binary``."""
+    """Convert a message to YAML; raw bytes become ``!!binary`` values."""
     if isinstance(msg, bytes):
         import yaml
 
@@ -26,7 +26,7 @@ def message_to_yaml(
 
 
 def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False) -> str:
-    """Convert a message to comma-separated values; raw bytes become Python's ``repr``."""
+    """Convert a message to comma-separated values; raw bytes are written as Python's ``repr``."""
     if isinstance(msg, bytes):
         return str(msg)
     return to_csv(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
@@ -35,7 +35,7 @@ def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool
 def message_to_ordereddict(
     msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False
 ) -> OrderedDict[str, Any]:
-    """Return the fields of a message as plain values; its bytes as the field ``bytes``."""
+    """Return the fields of a message as plain values; raw bytes become the field ``bytes``."""
     if isinstance(msg, bytes):
         return OrderedDict(bytes=msg)
     return to_dict(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
@@ -54,7 +54,7 @@ def convert_value(
     no_arr: bool = False,
     no_str: bool = False,
 ) -> Any:
-    """Convert a value to plain Python; strings and containers, and their items, are truncated to a length."""
+    """Convert a value to plain Python; strings, containers and their items are truncated to a length."""
 
     def convert(item: Any) -> Any:
         return convert_value(item, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)

@@ -8,12 +8,12 @@ from linkwright.packages import current_finder, interface_files
 
 
 def get_interface_packages() -> list[str]:
-    """The packages that have interfaces, sorted."""
+    """Return the names of the packages that have interfaces, sorted."""
     return sorted({name.partition("/")[0] for kind in ("msg", "srv", "action") for name in LIBRARY.names(kind)})
 
 
 def get_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
-    """Package -> its messages, services and actions, such as ``msg/String``.
+    """Return the messages, services and actions of each package, such as ``msg/String``.
 
     Raises:
         LookupError: one of the packages does not exist.
@@ -22,26 +22,26 @@ def get_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
 
 
 def get_message_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
-    """Package -> its messages, such as ``msg/String``."""
+    """Return the messages of each package, such as ``msg/String``."""
     return _by_package(("msg",), package_names)
 
 
 def get_service_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
-    """Package -> its services, such as ``srv/SetBool``."""
+    """Return the services of each package, such as ``srv/SetBool``."""
     return _by_package(("srv",), package_names)
 
 
 def get_action_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
-    """Package -> its actions, such as ``action/Fibonacci``."""
+    """Return the actions of each package, such as ``action/Fibonacci``."""
     return _by_package(("action",), package_names)
 
 
 def get_interface_path(interface_name: str) -> str:
-    """The file that defines an interface.
+    """Return the path of the file that defines an interface.
 
     Raises:
         ValueError: the text is not the name of an interface.
-        LookupError: it has no file.
+        LookupError: the interface has no file.
     """
     parts = interface_name.split("/")
     if len(parts) != 3:

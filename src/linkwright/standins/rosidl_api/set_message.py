@@ -1,4 +1,4 @@
-"""The fields of a message, set from a dictionary."""
+"""Set the fields of a message from a dictionary."""
 
 from typing import Any
 
@@ -8,7 +8,9 @@ from linkwright.messages import set_fields
 def set_message_fields(
     msg: Any, values: dict[str, Any], expand_header_auto: bool = False, expand_time_now: bool = False
 ) -> list[Any]:
-    """Set fields, and return functions that fill in the stamps given as ``now`` when the message is sent.
+    """Set the fields of a message; return functions that set the stamps given as ``now``.
+
+    The functions are to be called when the message is sent.
 
     Raises:
         AttributeError: a field does not exist.

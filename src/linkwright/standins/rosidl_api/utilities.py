@@ -1,4 +1,4 @@
-"""Classes of interfaces, by their names."""
+"""Find the classes of interfaces by name."""
 
 from typing import Any
 
@@ -9,32 +9,32 @@ from linkwright.messages.definitions.library import LIBRARY
 
 
 def get_message(identifier: str) -> Any:
-    """The class of a message, ``std_msgs/msg/String``."""
+    """Return the class of a message, such as ``std_msgs/msg/String``."""
     return _found(classes.get_message, identifier, "message")
 
 
 def get_service(identifier: str) -> Any:
-    """The class of a service, ``std_srvs/srv/SetBool``."""
+    """Return the class of a service, such as ``std_srvs/srv/SetBool``."""
     return _found(classes.get_service, identifier, "service")
 
 
 def get_action(identifier: str) -> Any:
-    """The class of an action, ``example_interfaces/action/Fibonacci``."""
+    """Return the class of an action, such as ``example_interfaces/action/Fibonacci``."""
     return _found(classes.get_action, identifier, "action")
 
 
 def get_interface(identifier: str) -> Any:
-    """The class of a message, service or action."""
+    """Return the class of a message, service or action."""
     return _found(classes.get_interface, identifier, "interface")
 
 
 def import_message_from_namespaced_type(message_type: Any) -> Any:
-    """The class of a `rosidl_parser.definition.NamespacedType`."""
+    """Return the class for a ``rosidl_parser.definition.NamespacedType``."""
     return classes.get_message("/".join(message_type.namespaced_name()))
 
 
 def _found(getter: Any, identifier: str, what: str) -> Any:
-    # Callers expect the exceptions that an import of the generated module raises.
+    # Callers expect the exceptions that importing the generated module would raise.
     name = split_name(identifier)
     if name is None or name.kind is None:
         raise ValueError(f"Expected the full name of a {what}, got '{identifier}'")

@@ -1,6 +1,6 @@
 """A pytest plugin that provides ``launch_pytest`` and ``launch_testing`` to the tests that import them.
 
-pytest finds it beside the stand-ins. It imports nothing before it is needed, and does nothing if the real ones are
+pytest finds it next to the stand-ins. It imports nothing before it is needed, and does nothing if the real packages are
 installed.
 """
 
@@ -26,13 +26,13 @@ _MARKERS = (
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Declare launch_testing's option."""
+    """Register the command-line option of launch_testing."""
     if not _is_real("launch_testing"):
         parser.addoption("--launch-args", action="append", nargs="*", default=[], help="arguments of launch tests")
 
 
 def pytest_addhooks(pluginmanager: pytest.PytestPluginManager) -> None:
-    """Declare launch_testing's hook, which conftest.py files may have."""
+    """Register launch_testing's hook, which conftest.py files may implement."""
     if not _is_real("launch_testing"):
         pluginmanager.add_hookspecs(_Hooks)
 
@@ -46,12 +46,12 @@ def pytest_configure(config: pytest.Config) -> None:
 class _Hooks:
     @pytest.hookspec(firstresult=True)
     def pytest_launch_collect_makemodule(self, path: Path, parent: pytest.Collector, entrypoint: object) -> Any:
-        """Create a collector of the tests of a file."""
+        """Create a collector for the tests in a file."""
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> Any:
-    """Collect a file whose ``generate_test_description`` is marked as one launch test."""
+    """Collect a file as one launch test if its ``generate_test_description`` has a marker for that."""
     if _is_real("launch_testing") or _DESCRIPTION not in module_path.read_bytes():
         return None
     return importlib.import_module(_ITEMS)._collect_marked(module_path, parent)
@@ -59,7 +59,7 @@ def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pycollect_makeitem(collector: Any, name: str, obj: object) -> Any:
-    """Register the plugin when the first test is collected after ``launch_pytest`` was imported."""
+    """Register the plugin when the first test is collected after the import of ``launch_pytest``."""
     manager = collector.config.pluginmanager
     if not _is_ours(sys.modules.get(_PLUGIN)):
         return None
@@ -79,6 +79,6 @@ def _is_ours(module: ModuleType | None) -> bool:
 
 
 def _is_real(package: str) -> bool:
-    """Return whether a package is installed, so that ours is not used."""
+    """Return whether the real package is installed, in which case ours is not used."""
     found = PathFinder.find_spec(package)
     return found is not None and found.origin is not None and not found.origin.endswith(".txt")

@@ -1,10 +1,10 @@
-"""Run by every Python that has this folder on its ``PYTHONPATH``; makes the stand-ins importable.
+"""Makes the stand-ins importable; every Python process with this folder on its ``PYTHONPATH`` runs this module.
 
 Linkwright is imported only when the program imports a module of ours that no other finder has. If a real rclpy is
-importable, none of ours is offered: its nodes accept only the real message classes, and vice versa.
+importable, none of our modules is provided: its nodes accept only the real message classes, and vice versa.
 """
 
-# Every Python process pays for the imports here, and pathlib is slow to import.
+# Every Python process executes the imports here, and pathlib is slow to import.
 # ruff: noqa: PTH100, PTH109, PTH113, PTH118, PTH120, PTH208
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _PARENTS_LOOKED_AT = 5
 
 
 class StandIns:
-    """A finder of modules that comes after all others."""
+    """Finds the stand-ins; this finder comes after all others."""
 
     def __init__(self) -> None:
         self._names: frozenset[str] | None = None
@@ -40,7 +40,7 @@ class StandIns:
         self._searching = False
 
     def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
-        """Return the stand-in for a module that no other finder has."""
+        """Return the spec of the stand-in for a module that no other finder has, or None."""
         if self._searching or name.startswith("_"):
             return None
         top, _, rest = name.partition(".")
@@ -57,7 +57,7 @@ class StandIns:
         return self.interface(name) if _may_hold_interfaces(top) else None
 
     def interface(self, name: str) -> ModuleSpec | None:
-        """Return the interface module with a name, or None."""
+        """Return the spec of an interface module, or None."""
         if self._searching or self.has_real_ros():
             return None
         self._searching = True
@@ -70,7 +70,7 @@ class StandIns:
             self._searching = False
 
     def has(self, name: str) -> bool:
-        """Return whether there is a stand-in with a name."""
+        """Return whether there is a stand-in with the given name."""
         if self._names is None:
             try:
                 self._names = frozenset(name.removesuffix(".txt") for name in os.listdir(_TABLES))
@@ -79,7 +79,7 @@ class StandIns:
         return name in self._names
 
     def has_real_ros(self) -> bool:
-        """Return whether there is an rclpy besides ours."""
+        """Return whether an rclpy other than ours is installed."""
         if self._real_ros is None:
             found = PathFinder.find_spec("rclpy", [entry for entry in sys.path if entry != _TABLES])
             self._real_ros = found is not None and found.origin is not None
@@ -87,16 +87,16 @@ class StandIns:
 
 
 class SourceFolders:
-    """A finder that comes before all others, because Python would import the source folders of packages as modules.
+    """Finds stand-ins and interface modules whose names are also source folders; this finder comes before all others.
 
-    ``my_msgs/msg`` would be an empty module otherwise, and so would ``launch`` beside ``package.xml``.
+    Otherwise Python would import the folders as empty modules: ``my_msgs/msg``, or ``launch`` next to ``package.xml``.
     """
 
     def __init__(self, stand_ins: StandIns) -> None:
         self._stand_ins = stand_ins
 
     def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
-        """Return the stand-in or interface module for a name that is otherwise only a folder."""
+        """Return the spec of the stand-in or interface module for a name that is otherwise only a folder, or None."""
         package, _, kind = name.rpartition(".")
         if not package:
             return self._stand_ins.find_spec(name) if self._is_hidden(name) else None
@@ -105,7 +105,7 @@ class SourceFolders:
         return None if getattr(sys.modules[package], "__file__", None) else self._stand_ins.interface(name)
 
     def _is_hidden(self, name: str) -> bool:
-        """Return whether a stand-in has the name of a folder that is not a package."""
+        """Return whether a folder that is not a package hides the stand-in with its name."""
         if not self._stand_ins.has(name):
             return False
         found = PathFinder.find_spec(name)
@@ -113,7 +113,7 @@ class SourceFolders:
 
 
 def _may_hold_interfaces(package: str) -> bool:
-    """Return whether a name may be a package with interface files, so that loading Linkwright is worthwhile."""
+    """Return whether a package may have interface files, so that loading Linkwright is worthwhile."""
     if _is_loaded("linkwright.messages") or package.endswith(_INTERFACE_ENDINGS) or package in _OTHER_INTERFACES:
         return True
     shares = [os.path.join(prefix, "share") for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)]
@@ -121,13 +121,13 @@ def _may_hold_interfaces(package: str) -> bool:
 
 
 def _is_loaded(name: str) -> bool:
-    """Return whether a module is completely imported; imports during its own import are not ours to handle."""
+    """Return whether a module is completely imported; imports made during its import are not ours to handle."""
     module = sys.modules.get(name)
     return module is not None and not getattr(module.__spec__, "_initializing", False)
 
 
 def _near_folders() -> list[str]:
-    """Return the folders with packages of the program's own workspace."""
+    """Return the folders that may contain packages of the program's own workspace."""
     current = os.getcwd()
     folders = [current, os.path.join(current, "src")]
     program = os.path.abspath(sys.argv[0]) if getattr(sys, "argv", [""])[0] else current
@@ -138,16 +138,16 @@ def _near_folders() -> list[str]:
 
 
 def _make_importable() -> None:
-    """Append Linkwright and its dependencies to the path, behind the program's own entries."""
+    """Append Linkwright and its dependencies to ``sys.path``, after the program's own entries."""
     for folder in (_LINKWRIGHT, *os.environ.get("LINKWRIGHT_SITE", "").split(os.pathsep)):
         if folder and folder not in sys.path:
             sys.path.append(folder)
 
 
 def _for_a_program(spec: ModuleSpec | None) -> ModuleSpec | None:
-    """Return a module for a user's program, and check messages from then on as its ROS distribution does.
+    """Return the spec unchanged; for a user's program, make messages check fields as its ROS distribution does.
 
-    A command of Linkwright in the shell is not such a program, because it runs our own nodes.
+    A command of Linkwright in the shell is not a user's program, because it runs our own nodes.
     """
     named = "ROS_DISTRO" in os.environ or "ROS_PYTHON_CHECK_FIELDS" in os.environ
     if spec is not None and named and not _is_loaded("linkwright.cli"):
@@ -164,7 +164,7 @@ def _run_next_sitecustomize() -> None:
     spec = PathFinder.find_spec("sitecustomize", others)
     if spec is None or spec.loader is None:
         return
-    from importlib.util import module_from_spec  # imported late, because it is large
+    from importlib.util import module_from_spec  # imported late because it is large
 
     module = module_from_spec(spec)
     sys.modules["sitecustomize"] = module
@@ -172,10 +172,11 @@ def _run_next_sitecustomize() -> None:
 
 
 def _report_with_hint(kind: type[BaseException], error: BaseException, traceback: object) -> None:
-    """Print an uncaught error as Python does, with a hint if a module of ROS, or a name in it, is missing.
+    """Print an uncaught error as Python does, with a hint if a ROS module, or a name in one, is missing.
 
-    Ctrl-C ends a node that waits for messages, or is still being imported, without a traceback. In the user's own code,
-    the traceback is printed, to show the location.
+    Ctrl-C ends a node without a traceback while it waits for messages or is still being imported. In the user's own
+    code,
+    the traceback is printed to show the location.
     """
     if kind is KeyboardInterrupt and _is_between_messages(traceback):
         return
@@ -194,12 +195,12 @@ def _report_with_hint(kind: type[BaseException], error: BaseException, traceback
 
 
 def _is_between_messages(traceback: object) -> bool:
-    """Return whether a traceback ends in our code and its callees, or in a module that is being imported."""
+    """Return whether a traceback ends in our code or its callees, or in a module that is being imported."""
     is_ours, modules = False, 0
     while traceback is not None:
         code = traceback.tb_frame.f_code  # type: ignore[attr-defined]  # as above
         traceback = traceback.tb_next  # type: ignore[attr-defined]
-        modules += code.co_name == "<module>"  # the program itself, and what it imports
+        modules += code.co_name == "<module>"  # the program itself, and the modules it imports
         if not code.co_filename.endswith(_SIGNALS):
             ours = code.co_filename.startswith(_OURS)
             is_ours = ours or (is_ours and code.co_filename.startswith((_STANDARD_LIBRARY, "<")))
@@ -209,6 +210,6 @@ def _is_between_messages(traceback: object) -> bool:
 _stand_ins = StandIns()
 sys.meta_path.insert(0, SourceFolders(_stand_ins))
 sys.meta_path.append(_stand_ins)
-if __name__ == "sitecustomize":  # not if `linkwright.pytest_plugin` runs it after Python's start
+if __name__ == "sitecustomize":  # not when `linkwright.pytest_plugin` runs this file after Python's startup
     sys.excepthook = _report_with_hint
     _run_next_sitecustomize()

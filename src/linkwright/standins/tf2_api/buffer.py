@@ -1,4 +1,4 @@
-"""The buffer of a node (tf2_ros ``Buffer``)."""
+"""The transform buffer of a node (tf2_ros ``Buffer``)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class Buffer(transform_waiting.Buffer, BufferInterface):
 
     Args:
         cache_time: the duration for which transforms are kept; 10 seconds by default.
-        node: if given, it offers the service ``tf2_frames``, and the buffer is cleared when its clock jumps back.
+        node: a node that offers the service ``tf2_frames``; the buffer is cleared when the node's clock jumps back.
     """
 
     def __init__(self, cache_time: Any = None, node: Any = None) -> None:

@@ -1,4 +1,4 @@
-"""Transform lookups in another process (tf2_ros ``BufferClient``)."""
+"""Look up transforms in another process (tf2_ros ``BufferClient``)."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ _NO_ERROR = 0
 
 
 class BufferClient(BufferInterface):
-    """Requests transforms from a buffer server, an action; another thread must spin the node.
+    """Requests transforms from the action of a buffer server; another thread must spin the node.
 
     Args:
         node: the node of the client.
         ns: the name of the action.
-        check_frequency: not needed here, because there is no polling.
-        timeout_padding: how much longer than the timeout of a lookup to wait for its response; a number is in seconds.
+        check_frequency: ignored, because the client does not poll.
+        timeout_padding: how long to wait for a response beyond the timeout of the lookup; a number is in seconds.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class BufferClient(BufferInterface):
         )
 
     def destroy(self) -> None:
-        """Destroy the client of the action."""
+        """Destroy the action client."""
         self.action_client.destroy()
 
     def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Duration = NO_TIME) -> Any:
@@ -90,7 +90,7 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Duration = NO_TIME,
     ) -> Any:
-        """Return the pose of the source frame at one time in the target frame at another.
+        """Return the pose of the source frame at one time in the target frame at another time.
 
         Raises:
             TransformException: there is no transform or no response.
@@ -109,7 +109,7 @@ class BufferClient(BufferInterface):
         )
 
     def can_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Duration = NO_TIME) -> bool:
-        """Return whether `lookup_transform` gives a transform."""
+        """Return whether `lookup_transform` would return a transform."""
         try:
             self.lookup_transform(target_frame, source_frame, time, timeout)
         except TransformException:
@@ -125,7 +125,7 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Duration = NO_TIME,
     ) -> bool:
-        """Return whether `lookup_transform_full` gives a transform."""
+        """Return whether `lookup_transform_full` would return a transform."""
         try:
             self.lookup_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame, timeout)
         except TransformException:

@@ -1,4 +1,4 @@
-"""Point clouds in another frame (``tf2_sensor_msgs``)."""
+"""Transform point clouds into another frame (``tf2_sensor_msgs``)."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ def transform_points(point_cloud: ArrayLike, transform: Any) -> NDArray[np.float
 
 
 def do_transform_cloud(cloud: Any, transform: Any) -> Any:
-    """Transform a cloud into the parent frame of a transform; fields other than x, y and z stay unchanged.
+    """Transform a cloud into the parent frame of a transform; fields other than x, y and z do not change.
 
     Args:
         cloud: sensor_msgs/msg/PointCloud2.
-        transform: geometry_msgs/msg/TransformStamped, whose header is that of the new cloud.
+        transform: geometry_msgs/msg/TransformStamped, whose header becomes the header of the new cloud.
     """
     points = read_points(cloud).copy()
     moved = transform_points(np.stack([points[axis] for axis in _AXES], axis=-1), transform)
@@ -47,7 +47,7 @@ def do_transform_cloud(cloud: Any, transform: Any) -> Any:
 
 
 def to_msg_msg(msg: Any) -> Any:
-    """Return the message itself."""
+    """Return the message unchanged."""
     return msg
 
 
@@ -55,7 +55,7 @@ from_msg_msg = to_msg_msg
 
 
 def register() -> None:
-    """Register the transformation of clouds with all buffers."""
+    """Register the transformation of point clouds for all buffers."""
     kind = get_message("sensor_msgs/msg/PointCloud2")
     TransformRegistration().add(kind, do_transform_cloud)
     ConvertRegistration().add_to_msg(kind, to_msg_msg)

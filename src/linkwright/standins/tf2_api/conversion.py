@@ -12,7 +12,7 @@ Conversion = Callable[[Any], Any]
 
 
 class TypeException(Exception):
-    """A type has not been registered.
+    """Raised when a type has not been registered.
 
     Attributes:
         errstr: the error message.
@@ -24,7 +24,7 @@ class TypeException(Exception):
 
 
 class NotImplementedException(Exception):
-    """A buffer cannot do this."""
+    """Raised when a buffer does not support an operation."""
 
     def __init__(self) -> None:
         self.errstr = "CanTransform or LookupTransform not implemented"
@@ -32,61 +32,61 @@ class NotImplementedException(Exception):
 
 
 class TransformRegistration:
-    """The functions that transform each type; one registry for all objects of this class."""
+    """The functions that transform each type; all objects of this class share one registry."""
 
     _by_type: ClassVar[dict[Any, Transformation]] = {}
 
     def add(self, key: Any, callback: Transformation) -> None:
-        """Register a type's function of a value and a transform."""
+        """Register the function that transforms values of a type."""
         self._by_type[key] = callback
 
     def get(self, key: Any) -> Transformation:
-        """Return the function for a type.
+        """Return the function that transforms values of a type.
 
         Raises:
-            TypeException: there is none.
+            TypeException: the type is not registered.
         """
         return _found(self._by_type, key)
 
     def print_me(self) -> None:
         """Print the registry."""
-        print(self._by_type)  # the purpose of the method
+        print(self._by_type)  # printing is the purpose of the method
 
 
 class ConvertRegistration:
-    """The functions that convert each type to and from messages, or to another type; one registry for all objects."""
+    """The functions that convert types to and from messages, or to other types; all objects share one registry."""
 
     _to_msg: ClassVar[dict[Any, Conversion]] = {}
     _from_msg: ClassVar[dict[Any, Conversion]] = {}
     _direct: ClassVar[dict[Any, Conversion]] = {}
 
     def add_from_msg(self, key: Any, callback: Conversion) -> None:
-        """Register the conversion of a message to a type."""
+        """Register the conversion from messages to a type."""
         self._from_msg[key] = callback
 
     def add_to_msg(self, key: Any, callback: Conversion) -> None:
-        """Register the conversion of a type to a message."""
+        """Register the conversion from a type to messages."""
         self._to_msg[key] = callback
 
     def add_convert(self, key: tuple[Any, Any], callback: Conversion) -> None:
-        """Register the conversion of the first type to the second."""
+        """Register the conversion from the first type of a pair to the second."""
         self._direct[key] = callback
 
     def get_from_msg(self, key: Any) -> Conversion:
-        """Return the conversion of a message to a type; TypeException if it is not registered."""
+        """Return the conversion from messages to a type; TypeException if it is not registered."""
         return _found(self._from_msg, key)
 
     def get_to_msg(self, key: Any) -> Conversion:
-        """Return the conversion of a type to a message; TypeException if it is not registered."""
+        """Return the conversion from a type to messages; TypeException if it is not registered."""
         return _found(self._to_msg, key)
 
     def get_convert(self, key: tuple[Any, Any]) -> Conversion:
-        """Return the conversion of one type to another; TypeException if it is not registered."""
+        """Return the conversion from one type to another; TypeException if it is not registered."""
         return _found(self._direct, key)
 
 
 def convert(a: Any, b_type: Any) -> Any:
-    """Convert a value to another type, through a message if necessary; return a copy for the same type.
+    """Convert a value to another type, through a message if necessary; return a copy if the type is the same.
 
     Raises:
         TypeException: the conversion is not registered.
@@ -101,7 +101,7 @@ def convert(a: Any, b_type: Any) -> Any:
 
 
 def Stamped(obj: Any, stamp: Any, frame_id: str) -> Any:
-    """The object with a header."""
+    """Return the object with a header that has the stamp and the frame."""
     from linkwright.messages import get_message
 
     obj.header = get_message("std_msgs/msg/Header")(frame_id=frame_id, stamp=stamp)

@@ -1,4 +1,4 @@
-"""Registers the messages of geometry_msgs with buffers (``import tf2_geometry_msgs``)."""
+"""Register the messages of geometry_msgs for transformation by buffers (``import tf2_geometry_msgs``)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _TRANSFORMATIONS = {
 
 
 def to_msg_msg(msg: Any) -> Any:
-    """Return the message itself."""
+    """Return the message unchanged."""
     return msg
 
 
@@ -27,7 +27,7 @@ from_msg_msg = to_msg_msg
 
 
 def register() -> None:
-    """Register their transformation with all buffers."""
+    """Register the transformation of geometry_msgs messages for all buffers."""
     for name, transformation in _TRANSFORMATIONS.items():
         kind = get_message(f"geometry_msgs/msg/{name}")
         TransformRegistration().add(kind, transformation)

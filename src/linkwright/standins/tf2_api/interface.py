@@ -1,4 +1,4 @@
-"""The common interface of buffers of tf2_ros (tf2_ros ``BufferInterface``)."""
+"""The common interface of tf2_ros buffers (tf2_ros ``BufferInterface``)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ NO_TIME = Duration()
 
 
 class BufferInterface:
-    """Looks up transforms, and transforms messages by them."""
+    """Looks up transforms and applies them to messages."""
 
     def __init__(self) -> None:
         self.registration = TransformRegistration()
@@ -22,7 +22,7 @@ class BufferInterface:
         """Transform a stamped object into another frame.
 
         Args:
-            object_stamped: the object, of a registered type: ``import tf2_geometry_msgs`` registers those of
+            object_stamped: the object, of a registered type: ``import tf2_geometry_msgs`` registers the types of
                 geometry_msgs.
             target_frame: the other frame.
             timeout: how long to wait for the transform.
@@ -66,13 +66,13 @@ class BufferInterface:
         raise NotImplementedException
 
     def lookup_transform_full(self, *_question: Any, **_options: Any) -> Any:
-        """Return the pose of a source frame at a time in a target frame at another, through a fixed frame."""
+        """Return the pose of a source frame at one time in a target frame at another time, through a fixed frame."""
         raise NotImplementedException
 
     def can_transform(self, *_question: Any, **_options: Any) -> Any:
-        """Return whether `lookup_transform` would give a transform."""
+        """Return whether `lookup_transform` would return a transform."""
         raise NotImplementedException
 
     def can_transform_full(self, *_question: Any, **_options: Any) -> Any:
-        """Return whether `lookup_transform_full` would give a transform."""
+        """Return whether `lookup_transform_full` would return a transform."""
         raise NotImplementedException

@@ -1,4 +1,4 @@
-"""Fills a buffer from the topics (tf2_ros ``TransformListener``)."""
+"""Fill a buffer from the transform topics (tf2_ros ``TransformListener``)."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class TransformListener:
         spin_thread: whether a separate thread spins the node.
         qos: the profile for ``/tf``.
         static_qos: the profile for ``/tf_static``.
-        tf_topic: the topic instead of ``/tf``.
-        tf_static_topic: the topic instead of ``/tf_static``.
+        tf_topic: the topic to use instead of ``/tf``.
+        tf_static_topic: the topic to use instead of ``/tf_static``.
         static_only: whether to subscribe only to ``/tf_static``.
     """
 
@@ -65,7 +65,7 @@ class TransformListener:
             self.dedicated_listener_thread.start()
 
     def unregister(self) -> None:
-        """Unsubscribe."""
+        """Destroy the subscriptions."""
         subscriptions, self._subscriptions = self._subscriptions, []
         for subscription in subscriptions:
             self.node.destroy_subscription(subscription)
@@ -75,11 +75,11 @@ class TransformListener:
             self.executor = None
 
     def callback(self, data: Any) -> None:
-        """Handle a message of ``/tf``."""
+        """Add the transforms of a message of ``/tf`` to the buffer."""
         self.buffer.update(data, static=False, authority=_AUTHORITY)
 
     def static_callback(self, data: Any) -> None:
-        """Handle a message of ``/tf_static``."""
+        """Add the transforms of a message of ``/tf_static`` to the buffer."""
         self.buffer.update(data, static=True, authority=_AUTHORITY)
 
     def _spin(self) -> None:

@@ -1,1 +1,1 @@
-"""The API of the Python module ``xacro``, on the engine of `linkwright.xacro`."""
+"""The API of the Python module ``xacro``, based on the engine of `linkwright.xacro`."""

@@ -15,7 +15,7 @@ def is_tty(stream: object) -> bool:
 
 
 def colorize(msg: object, color: str | int | None, file: IO[str] | None = None, alt_text: str | None = None) -> str:
-    """Return a text in a colour for a terminal; otherwise with `alt_text` before it."""
+    """Return a text in a colour if the output is a terminal, otherwise the text after `alt_text`."""
     code = _CODES.get(color, 0) if isinstance(color, str) else color
     if code and is_tty(sys.stderr if file is None else file):
         return f"\x1b[{code}m{msg}\x1b[0m"

@@ -11,7 +11,7 @@ REMAP = ":="
 
 
 def load_mappings(argv: Iterable[str]) -> dict[str, str]:
-    """Parse the arguments ``name:=value``; empty values and names with one leading ``_`` are skipped.
+    """Parse the arguments ``name:=value``; empty values and names with a single leading ``_`` are skipped.
 
     Raises:
         RuntimeError: an argument contains ``:=`` twice.
@@ -29,14 +29,14 @@ def load_mappings(argv: Iterable[str]) -> dict[str, str]:
 
 
 def process_args(argv: Sequence[str], require_input: bool = True) -> tuple[argparse.Namespace, str | None]:
-    """Parse the options and the file.
+    """Parse the options and the file name of the command line.
 
     Args:
         argv: the arguments, without the command.
-        require_input: whether exactly one file is required; otherwise None is returned for a missing file.
+        require_input: whether exactly one file is required; if not, None is returned for a missing file.
 
     Returns:
-        ``output``, ``just_deps``, ``in_order``, ``root_dir``, ``verbosity`` and ``mappings``, and the file.
+        The options ``output``, ``just_deps``, ``in_order``, ``root_dir``, ``verbosity`` and ``mappings``, and the file.
 
     Raises:
         SystemExit: a usage error.

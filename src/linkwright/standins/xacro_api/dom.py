@@ -1,7 +1,7 @@
-"""Conversion between the trees of `linkwright.xmltree` and documents of ``xml.dom.minidom``.
+"""Convert between the trees of `linkwright.xmltree` and documents of ``xml.dom.minidom``.
 
-The nodes created here are minidom's, with two differences: elements are written as ros/xacro writes them, which instead
-replaces minidom's method for the entire process, and elements and texts record their locations.
+The nodes created here are minidom's, with two differences: elements are written as ros/xacro writes them, and elements
+and texts record their locations. (ros/xacro replaces minidom's writing method for the entire process instead.)
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _NO_PREFIX = ""
 
 
 class DomElement(minidom.Element):
-    """An element.
+    """A minidom element that records its location.
 
     Attributes:
         place: its source text and offset, or None.
@@ -26,7 +26,7 @@ class DomElement(minidom.Element):
     place: tuple[SourceText, int] | None = None
 
     def writexml(self, writer: Any, indent: str = "", addindent: str = "", newl: str = "") -> None:
-        """Write the element with sorted attributes, without blank text, and on one line if it contains only text."""
+        """Write the element with sorted attributes, without blank text; on one line if it contains only text."""
         attributes = dict(self.attributes.items())
         written = "".join(f' {name}="{escaped(attributes[name])}"' for name in sorted(attributes))
         writer.write(f"{indent}<{self.tagName}{written}")
@@ -44,7 +44,7 @@ class DomElement(minidom.Element):
 
 
 class DomText(minidom.Text):
-    """Character data with the same output in all versions of Python.
+    """Character data that is written identically in all versions of Python.
 
     Attributes:
         place: its source text and offset, or None.
@@ -59,12 +59,12 @@ class DomText(minidom.Text):
 
 
 def escaped(text: str) -> str:
-    """Escape a text for element content and attributes."""
+    """Escape a text for use in element content and attributes."""
     return text.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;").replace(">", "&gt;")
 
 
 def fill(target: minidom.Document, document: Document) -> None:
-    """Fill a document from a tree; its root element stays the same object if it is one of ours."""
+    """Fill a document from a tree; the existing root element is reused if it is a `DomElement`."""
     old = target.documentElement
     kept = old if isinstance(old, DomElement) else None
     for node in list(target.childNodes):
@@ -111,7 +111,7 @@ def read(document: minidom.Document) -> Document:
 
 
 def is_same(document: minidom.Document, tree: Document) -> bool:
-    """Return whether a document still matches a tree, so that the tree's places are valid."""
+    """Return whether a document still matches a tree, so that the locations in the tree are valid."""
     pending = [(document.documentElement, tree.root)]
     while pending:
         theirs, ours = pending.pop()
@@ -146,7 +146,7 @@ def _tree(owner: minidom.Document, root: Element, kept: DomElement | None) -> Do
 def _create(
     owner: minidom.Document, element: Element, spaces: Mapping[str, str], kept: DomElement | None
 ) -> tuple[DomElement, Mapping[str, str]]:
-    """Return the node of an element without its children, and the namespaces that its content declares."""
+    """Return the node for an element, without its children, and the namespaces that apply to its content."""
     declared = {name: value for name, value in element.attributes.items() if name.startswith("xmlns")}
     if declared:
         spaces = {**spaces, **{name.partition(":")[2]: value for name, value in declared.items()}}

@@ -1,4 +1,4 @@
-"""The exceptions of the module ``xacro`` that programs catch, with our diagnostics."""
+"""The exceptions of the module ``xacro`` that programs catch, with Linkwright's diagnostics."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.hosting.xacro_calls import DescriptionError, XacroCall
 
 
 class XacroException(LinkwrightError):
-    """An error in a description.
+    """Raised for an error in a description.
 
     Args:
         msg: the message.
@@ -21,7 +21,7 @@ class XacroException(LinkwrightError):
     Attributes:
         suffix: as given.
         exc: as given.
-        macros: the macro and those around it.
+        macros: the macro and the macros that call it.
     """
 
     def __init__(
@@ -35,7 +35,7 @@ class XacroException(LinkwrightError):
 
 
 class ExpansionError(XacroException, DescriptionError):
-    """A description that cannot be expanded.
+    """Raised when a file cannot be expanded.
 
     Attributes:
         call: the file to expand.
@@ -48,7 +48,7 @@ class ExpansionError(XacroException, DescriptionError):
 
 
 class TextError(XacroException):
-    """A description in a text that cannot be expanded."""
+    """Raised when a description given as text cannot be expanded."""
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         LinkwrightError.__init__(self, *diagnostics)
@@ -57,7 +57,7 @@ class TextError(XacroException):
 
 
 class MalformedError(LinkwrightError, ExpatError):
-    """A description that is not XML; line and column are in `lineno` and `offset`."""
+    """Raised for a description that is not XML; `lineno` and `offset` give the line and the column."""
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         LinkwrightError.__init__(self, *diagnostics)
@@ -68,7 +68,7 @@ class MalformedError(LinkwrightError, ExpatError):
 
 
 class MalformedFileError(MalformedError, DescriptionError):
-    """A file that is not XML, or that includes one.
+    """Raised for a file that is not XML, or that includes such a file.
 
     Attributes:
         call: the file to expand.
@@ -80,7 +80,7 @@ class MalformedFileError(MalformedError, DescriptionError):
 
 
 def translated(error: LinkwrightError, call: XacroCall | None) -> LinkwrightError:
-    """Convert an error of the engine to one that programs for ``xacro`` expect.
+    """Convert an error of the engine to an error that programs written for ``xacro`` expect.
 
     Args:
         error: the error of the engine.

@@ -1,4 +1,4 @@
-"""Evaluation of texts and expressions, as in the module ``xacro``."""
+"""Evaluate texts and expressions as the module ``xacro`` does."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ _Result = TypeVar("_Result")
 
 
 def eval_text(text: str, symbols: Mapping[str, Any] | None) -> Any:
-    """Evaluate a text with ``${...}`` and ``$(...)``; a single token keeps its type.
+    """Evaluate a text with ``${...}`` and ``$(...)``; a text that is a single expression keeps the type of its value.
 
     Args:
         text: the text.
-        symbols: names for expressions, in addition to those of the language.
+        symbols: names for expressions, in addition to the names of the language.
 
     Raises:
-        XacroException: it has no value.
+        XacroException: the text cannot be evaluated.
     """
     session = _session()
     return _checked(lambda: session.evaluate(text, _scope(session, symbols)))
@@ -39,7 +39,7 @@ def safe_eval(expr: str, globals: Mapping[str, Any] | None, locals: Mapping[str,
     """Evaluate an expression with the names that descriptions may use; see `eval_text`.
 
     Raises:
-        XacroException: it has no value, or is not allowed.
+        XacroException: the expression cannot be evaluated, or is not allowed.
     """
     from linkwright.xacro.expressions.expression import compile_expression
 
@@ -54,14 +54,14 @@ def eval_extension(s: str) -> str:
     """Evaluate a substitution such as ``$(find package)``.
 
     Raises:
-        XacroException: it has no value.
+        XacroException: the substitution cannot be evaluated.
     """
     session = _session()
     return _checked(lambda: substitute(s.removeprefix("$(").removesuffix(")"), session))
 
 
 def load_yaml(filename: str) -> Any:
-    """Load a YAML file; the keys of its mappings are attributes too.
+    """Load a YAML file; the keys of its mappings can be read as attributes too.
 
     Raises:
         XacroException: there is no such file, or it is not YAML.
@@ -72,7 +72,7 @@ def load_yaml(filename: str) -> Any:
 
 
 def dotify(mapping: Any = (), **items: Any) -> YamlDictWrapper:
-    """Return a mapping whose keys, at all levels, are attributes too."""
+    """Return a mapping whose keys, at all levels, can be read as attributes too."""
     result: YamlDictWrapper = YamlListWrapper.wrap(dict(mapping, **items))
     return result
 
@@ -95,17 +95,17 @@ def get_boolean_value(value: Any, condition: object = None) -> bool:
 
 
 def is_valid_name(name: str) -> bool:
-    """Return whether a name is valid for a property or macro: a Python identifier that is not a keyword."""
+    """Return whether a property or macro may have a name: a Python identifier that is not a keyword."""
     return name.isidentifier() and not keyword.iskeyword(name)
 
 
 def create_global_symbols() -> dict[str, Any]:
-    """Return the names that the language provides to expressions."""
+    """Return the names that the language provides in expressions."""
     return dict(_session().globals.values)
 
 
 class ConstructUnits(enum.Enum):
-    """The tags of YAML values with a unit, and the unit's value in metres or radians."""
+    """The YAML tags of values with a unit, and the size of each unit in metres or radians."""
 
     radians = ("!radians", yamldata.UNITS["!radians"])
     degrees = ("!degrees", yamldata.UNITS["!degrees"])
@@ -116,7 +116,7 @@ class ConstructUnits(enum.Enum):
 
 
 class YamlDictWrapper(dict[Any, Any]):
-    """A mapping whose keys are attributes too."""
+    """A mapping whose keys can be read as attributes too."""
 
     def __getattr__(self, item: str) -> Any:
         try:
@@ -130,7 +130,7 @@ class YamlListWrapper(list[Any]):
 
     @staticmethod
     def wrap(item: Any) -> Any:
-        """Wrap all mappings in a value in `YamlDictWrapper`, and all sequences in lists of this class."""
+        """Wrap the mappings in a value in `YamlDictWrapper`, and its sequences in `YamlListWrapper`."""
         if isinstance(item, dict):
             return YamlDictWrapper({key: YamlListWrapper.wrap(value) for key, value in item.items()})
         if isinstance(item, list):
@@ -139,7 +139,7 @@ class YamlListWrapper(list[Any]):
 
 
 class _View(dict[str, Any]):
-    """A view of a table's names, which may evaluate its values on access."""
+    """A view of the names in a table, which may evaluate its values on access."""
 
     __slots__ = ("_session", "_table")
 
@@ -155,7 +155,7 @@ class _View(dict[str, Any]):
         value = self._table[name]
         if isinstance(value, (YamlDictWrapper, YamlListWrapper)):
             return yamldata.dotted(value)
-        if isinstance(value, dict) and hasattr(value, "unevaluated"):  # the table of a namespace
+        if isinstance(value, dict) and hasattr(value, "unevaluated"):  # the value is the table of a namespace
             return Namespace(None, self._session, _View(value, self._session))
         return value
 

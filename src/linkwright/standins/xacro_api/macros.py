@@ -18,7 +18,7 @@ class Macro:
         body: the element that defines it.
         params: the names of its parameters.
         defaultmap: parameter -> whether to use the caller's property, and the text of its default.
-        history: for each definition, the files that were being processed.
+        history: for each definition, the files that were being processed at that time.
     """
 
     def __init__(self) -> None:
@@ -33,8 +33,9 @@ def parse_macro_arg(s: str) -> tuple[str, tuple[str | None, str | None] | None, 
     """Parse the first parameter in a list of parameters.
 
     Returns:
-        Its name; its default as the name of the caller's property to use (or None) and a text (or None), or None for a
-        parameter without a default; and the rest of the list.
+        The name of the parameter; its default; and the rest of the list. The default is the name of the caller's
+        property
+        to use (or None) and a text (or None); it is None for a parameter without a default.
 
     Raises:
         XacroException: a quote is not closed.
@@ -54,7 +55,7 @@ def parse_macro_arg(s: str) -> tuple[str, tuple[str | None, str | None] | None, 
 
 
 def resolve_macro(fullname: str, macros: Mapping[str, Any], symbols: Mapping[str, Any]) -> tuple[Any, Any, Any]:
-    """Return the macro with a name, which may have namespace prefixes, and its tables.
+    """Look up a macro by name, which may have namespace prefixes.
 
     Returns:
         The table of macros, the table of properties and the macro.

@@ -1,4 +1,4 @@
-"""The functions on nodes of minidom that the module ``xacro`` offers to programs."""
+"""Functions for minidom nodes that the module ``xacro`` offers to programs."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ def next_sibling_element(node: Any) -> Any:
 
 
 def replace_node(node: Any, by: Any, content_only: bool = False) -> None:
-    """Replace a node.
+    """Replace a node by another node, by several nodes, or by nothing.
 
     Args:
         node: the node to replace.
         by: a node, a list of nodes, or None.
-        content_only: whether to insert their children instead.
+        content_only: whether to insert the children of the nodes instead.
     """
     parent = node.parentNode
     for new in by if isinstance(by, list) else [] if by is None else [by]:
@@ -54,7 +54,7 @@ def attribute(tag: Any, a: str) -> str | None:
 
 
 def opt_attrs(tag: Any, attrs: Sequence[str]) -> list[str | None]:
-    """Return the values of attributes; None for missing ones."""
+    """Return the values of attributes, with None for missing attributes."""
     return [attribute(tag, name) for name in attrs]
 
 
@@ -62,7 +62,7 @@ def reqd_attrs(tag: Any, attrs: Sequence[str]) -> list[str]:
     """Return the values of required attributes.
 
     Raises:
-        RuntimeError: one is missing.
+        RuntimeError: an attribute is missing.
     """
     for name in attrs:
         if not tag.hasAttribute(name):
@@ -71,10 +71,10 @@ def reqd_attrs(tag: Any, attrs: Sequence[str]) -> list[str]:
 
 
 def check_attrs(tag: Any, required: Sequence[str], optional: Sequence[str]) -> list[Any]:
-    """Return the values of the attributes that a tag may have, and print warnings about others.
+    """Return the values of the attributes that an element may have, and print warnings about other attributes.
 
     Raises:
-        RuntimeError: a required one is missing.
+        RuntimeError: a required attribute is missing.
     """
     values = [*reqd_attrs(tag, required), *opt_attrs(tag, optional)]
     others = [name for name in tag.attributes.keys() if name not in (*required, *optional)]  # noqa: SIM118 - not a dict
@@ -87,7 +87,7 @@ def check_attrs(tag: Any, required: Sequence[str], optional: Sequence[str]) -> l
 
 
 def import_xml_namespaces(parent: Any, attributes: Any) -> None:
-    """Declare the namespaces among some attributes on an element, and print warnings about contradictions."""
+    """Copy namespace declarations to an element, and print warnings about contradictory ones."""
     for name, value in attributes.items():
         if not name.startswith("xmlns:"):
             continue
@@ -105,7 +105,7 @@ def import_xml_namespaces(parent: Any, attributes: Any) -> None:
 
 
 def remove_previous_comments(node: Any) -> None:
-    """Remove the comments directly above a node, without a blank line or text in between."""
+    """Remove the comments directly above a node, with neither a blank line nor text in between."""
     following, previous = node.nextSibling, node.previousSibling
     while previous is not None:
         if previous.nodeType == _TEXT and previous.data.isspace() and previous.data.count("\n") <= 1:
@@ -121,7 +121,7 @@ def remove_previous_comments(node: Any) -> None:
 
 
 def grab_macro(elt: Any, macros: dict[str, Any]) -> None:
-    """Move a definition of a macro from a document to a table.
+    """Move the definition of a macro from a document to a table.
 
     Raises:
         XacroException: the name or the parameters are invalid.
@@ -147,7 +147,7 @@ def grab_macro(elt: Any, macros: dict[str, Any]) -> None:
 
 
 def grab_property(elt: Any, table: Table) -> None:
-    """Move a definition of a property from a document to a table.
+    """Move the definition of a property from a document to a table.
 
     Raises:
         XacroException: the name or the attributes are invalid.
@@ -184,7 +184,7 @@ def grab_property(elt: Any, table: Table) -> None:
 
 
 def eval_default_arg(forward_variable: str | None, default: str | None, symbols: Mapping[str, Any], macro: Any) -> Any:
-    """Return the value of a macro's parameter that the call omits.
+    """Return the default value of a macro parameter that the call omits.
 
     Raises:
         XacroException: there is neither a property nor a default.

@@ -1,4 +1,4 @@
-"""Expansion of files, texts and documents, as in the module ``xacro``."""
+"""Expand files, texts and documents as the module ``xacro`` does."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _FAILED = 2
 class XacroDocument(minidom.Document):
     """A document that records its file and its expansion.
 
-    A running launch tracks the locations of its text and supports live reload.
+    A running launch therefore knows the locations in the text, and can reload it when a file changes.
     """
 
     call: XacroCall | None = None
@@ -48,7 +48,7 @@ class XacroDocument(minidom.Document):
 
 
 def parse(inp: Any, filename: str | Path | None = None) -> minidom.Document:
-    """Parse a description into a document, without expansion.
+    """Parse a description into a document, without expanding it.
 
     Args:
         inp: its text, an open file, or a document, which is returned; None to open `filename`.
@@ -89,12 +89,12 @@ def process_doc(doc: minidom.Document, mappings: Mapping[str, Any] | None = None
 
     Args:
         doc: the document.
-        mappings: name -> value of the arguments; they are not changed.
-        options: `verbosity`; other options have no effect.
+        mappings: the arguments, name -> value; not modified.
+        options: `verbosity`; other options are ignored.
 
     Raises:
-        XacroException: an error in the description.
-        xml.parsers.expat.ExpatError: a file that it includes is not XML.
+        XacroException: there is an error in the description.
+        xml.parsers.expat.ExpatError: an included file is not XML.
     """
     STATE.verbosity = options.get("verbosity", STATE.verbosity)
     if not STATE.filestack:
@@ -112,19 +112,19 @@ def process_doc(doc: minidom.Document, mappings: Mapping[str, Any] | None = None
 def process_file(
     input_file_name: str | Path, *, mappings: Mapping[str, Any] | None = None, **options: Any
 ) -> minidom.Document:
-    """Expand a file.
+    """Expand a file into a document.
 
     Args:
         input_file_name: the file.
-        mappings: name -> value of the arguments; they are not changed.
-        options: `verbosity`; other options have no effect.
+        mappings: the arguments, name -> value; not modified.
+        options: `verbosity`; other options are ignored.
 
     Returns:
-        The document, with the comments before it that name the file.
+        The document, preceded by comments that name the file.
 
     Raises:
-        XacroException: an error in the description.
-        xml.parsers.expat.ExpatError: the file, or one that it includes, is not XML.
+        XacroException: there is an error in the description.
+        xml.parsers.expat.ExpatError: the file, or an included file, is not XML.
     """
     STATE.verbosity = options.get("verbosity", STATE.verbosity)
     init_stacks(input_file_name)
@@ -150,14 +150,14 @@ def process(
     verbosity: int = 1,
     mappings: Mapping[str, Any] | None = None,
 ) -> str:
-    """Return the expanded text of a file, or the names of its includes; see `process_file`.
+    """Return the expanded text of a file, or the names of the files it includes; see `process_file`.
 
     Args:
         input_file_name: the file.
-        just_deps: whether to return the names.
-        xacro_ns: without effect.
+        just_deps: whether to return the names of included files.
+        xacro_ns: ignored.
         verbosity: the amount of output.
-        mappings: name -> value of the arguments.
+        mappings: the arguments, name -> value.
     """
     document = process_file(input_file_name, mappings=mappings, verbosity=verbosity)
     return _result(document, just_deps=just_deps)
@@ -180,7 +180,7 @@ def open_output(output_filename: str | Path | None) -> IO[str]:
 
 
 def main(words: Sequence[str] | None = None) -> None:
-    """Run the command ``xacro``; exits on errors."""
+    """Run the command ``xacro``; exit on errors."""
     options, file = process_args(sys.argv[1:] if words is None else list(words))
     assert file is not None, "the options say that a file is needed"
     if options.root_dir:
@@ -226,7 +226,7 @@ def _words(mappings: Mapping[str, Any] | None) -> tuple[tuple[str, str], ...]:
 
 
 def _expand(tree: Document, file: str | None, mappings: Mapping[str, Any] | None, call: XacroCall | None) -> Expansion:
-    """Expand a tree, and print the remarks, unless a running launch reports them itself."""
+    """Expand a tree and print its diagnostics, unless a running launch reports them itself."""
     descriptions = current_descriptions()
     packages = descriptions.finder if descriptions is not None else None
     root = "" if str(STATE.root_dir) == os.curdir else str(STATE.root_dir)
@@ -258,5 +258,5 @@ def _print_remarks(diagnostics: Sequence[Diagnostic]) -> None:
 
 
 def _is_printed(diagnostic: Diagnostic) -> bool:
-    """Return whether the description itself printed it, with ``xacro.message`` or similar."""
+    """Return whether the description has already printed a diagnostic, for example with ``xacro.message``."""
     return diagnostic.code.startswith("XAC7")

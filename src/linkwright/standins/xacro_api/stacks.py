@@ -27,8 +27,8 @@ class State:
     """The variables of the module ``xacro``.
 
     Attributes:
-        filestack: the files being processed, the innermost last; None for a text.
-        macrostack: the macros being called, the innermost last.
+        filestack: the files being processed, innermost last; None for a text.
+        macrostack: the macros being called, innermost last.
         root_dir: the base folder of relative paths.
         verbosity: 0 to 4.
         all_includes: the files that were included or loaded since the process began.
@@ -55,7 +55,7 @@ def _of_state(name: str) -> property:
 
 
 class LiveModule(ModuleType):
-    """A module with the variables of `STATE`, so that programs can read and set them."""
+    """A module whose variables are those of `STATE`, so that programs can read and set them."""
 
     filestack = _of_state("filestack")
     macrostack = _of_state("macrostack")
@@ -65,18 +65,18 @@ class LiveModule(ModuleType):
 
 
 def share_state() -> None:
-    """Give the module ``xacro`` the variables of `STATE`."""
+    """Make the module ``xacro`` expose the variables of `STATE`."""
     sys.modules["xacro"].__class__ = LiveModule
 
 
 def init_stacks(file: str | Path | None) -> None:
-    """Reset the stacks for a file; None for a text."""
+    """Reset the stacks to start with a file; None for a text."""
     STATE.filestack = [None if file is None else str(file)]
     STATE.macrostack = []
 
 
 def abs_filename_spec(filename_spec: str) -> str:
-    """Return a file name relative to the folder of the current file, unless it is absolute."""
+    """Resolve a file name against the folder of the current file, unless the name is absolute."""
     if os.path.isabs(filename_spec):  # noqa: PTH117 - as written
         return filename_spec
     current = STATE.filestack[-1] if STATE.filestack else None
@@ -129,7 +129,7 @@ class StackSession(Session):
         self.globals.values["xacro"].values["print_location"] = self._print_location
 
     def read(self, path: str) -> Document:
-        """Return the document of a file, which is the current one from then on."""
+        """Read a file and make it the current file; return its document."""
         if STATE.filestack is not None and self._files:
             del STATE.filestack[self._files :]
             STATE.filestack.append(path)
@@ -145,12 +145,12 @@ class StackSession(Session):
         STATE.all_includes.append(file)
 
     def keep_place(self) -> None:
-        """Record the place of the first error; expansion continues after it."""
+        """Record the place of the first error, because expansion continues after an error."""
         if self._mistake is None:
             self._mistake = (list(STATE.filestack or []), list(STATE.macrostack or []))
 
     def return_to_mistake(self) -> None:
-        """Restore the stacks at the first error, because the expansion has failed."""
+        """Restore the stacks to their state at the first error, because the expansion has failed."""
         if self._mistake is not None:
             STATE.filestack, STATE.macrostack = self._mistake
 
@@ -185,7 +185,7 @@ class StackSession(Session):
             return
         stack.append(known[1])
         directive(expander, site)
-        stack.pop()  # only on success: an error leaves its place behind
+        stack.pop()  # only on success: after an error, the stack shows where it occurred
 
     def _print_location(self, *_: Any) -> str:
         print_location()

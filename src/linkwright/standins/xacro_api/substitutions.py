@@ -1,4 +1,4 @@
-"""Substitution arguments as ``xacro.substitution_args`` resolves them for programs."""
+"""Resolve substitution arguments as ``xacro.substitution_args`` does for programs."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from linkwright.xacro.inputs import Inputs
 
 
 class SubstitutionException(XacroException):
-    """A substitution that has no value."""
+    """Raised when a substitution cannot be resolved."""
 
 
 class ArgException(SubstitutionException):
-    """An argument that is neither declared nor given."""
+    """Raised when an argument is neither declared nor given."""
 
 
 def resolve_args(
@@ -25,13 +25,13 @@ def resolve_args(
     """Return a text with every ``$(...)`` replaced.
 
     Args:
-        arg_str: the text; None or an empty one is returned as it is.
-        context: ``arg`` in it is name -> value of the arguments.
+        arg_str: the text; None or an empty text is returned unchanged.
+        context: its key ``arg`` has the arguments, name -> value.
         filename: the file of the text, to whose folder ``$(dirname)`` refers.
 
     Raises:
         ArgException: an argument is missing.
-        SubstitutionException: another substitution has no value.
+        SubstitutionException: another substitution cannot be resolved.
     """
     if not arg_str:
         return arg_str

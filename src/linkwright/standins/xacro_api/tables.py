@@ -20,13 +20,13 @@ class Table(dict[str, Any]):
     """Names and their values, with a parent table; texts are evaluated on first access.
 
     Args:
-        parent: the parent table; a plain dict contains the language's own names.
+        parent: the parent table; a plain dict contains the names of the language.
 
     Attributes:
         parent: as given.
         root: the outermost table.
-        depth: the number of parent tables, without that of the language.
-        unevaluated: the names with unevaluated texts.
+        depth: the number of parent tables, excluding the table of the language.
+        unevaluated: the names whose texts have not been evaluated.
         recursive: the names whose evaluation is in progress.
     """
 
@@ -66,7 +66,7 @@ class Table(dict[str, Any]):
         return f"{dict.__repr__(self)}\n  parent: {self.parent}"
 
     def top(self) -> Table:
-        """The outermost table that is not the language's own."""
+        """Return the outermost table, excluding the table of the language."""
         table = self
         while table.parent is not table.root and isinstance(table.parent, Table):
             table = table.parent
@@ -110,7 +110,7 @@ class Table(dict[str, Any]):
 
 
 class NameSpace(Table):
-    """The table of an include with a namespace: its names are attributes too."""
+    """The table of an include with a namespace; its names can be read as attributes too."""
 
     def __getattr__(self, item: str) -> Any:
         if item.startswith("__"):
