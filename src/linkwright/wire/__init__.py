@@ -1,5 +1,5 @@
-"""Transports that carry the graph to other processes, a folder each.
+"""Transports that connect the graph to other processes, one folder for each.
 
-They have one interface, `linkwright.graph.endpoints.bus.Transport`; the graph calls it and knows nothing else of
-them. ``Graph.attach`` takes one. Which one a process has is decided in `joining`.
+They implement one interface, `linkwright.graph.endpoints.bus.Transport`, which is all that the graph knows of them.
+``Graph.attach`` attaches a transport. `joining` decides which transport a process uses.
 """

@@ -1,4 +1,4 @@
-"""The base of transports: an engine, made in the background, that mirrors the graph of this process."""
+"""The base class of transports: an engine, created in the background, mirrors the graph of this process."""
 
 from __future__ import annotations
 
@@ -37,27 +37,28 @@ _CLOSED_WITHIN = 0.05
 
 
 class Departed(Protocol):
-    """Judges how publishers outside left."""
+    """Judges how remote publishers left."""
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for lost publishers."""
 
 
 class BackgroundTransport(ABC):
-    """The graph of this process on the wire (`linkwright.graph.endpoints.bus.Transport`).
+    """Connects the graph of this process to the network (`linkwright.graph.endpoints.bus.Transport`).
 
-    Threads of its own do the work, so that no method here blocks unless its docstring states it; none of them runs a
-    user's callback. A forked process has no part in it: there, nothing goes out and nothing comes in.
+    Separate threads do the work. No method blocks unless its docstring says that it does, and these threads never run a
+    user's callback. In a forked process, the transport neither sends nor receives anything.
 
     Args:
         domain_id: the ROS domain.
-        outside: the tables of nodes and endpoints outside.
-        departures: judges how publishers outside left.
+        outside: the tables of remote nodes and endpoints.
+        departures: judges how remote publishers left.
         logger: logs problems.
-        only_looks: whether it only discovers what is outside: the graph's nodes and endpoints are not announced,
-            which saves making them there.
-        must_join: whether the caller of `join` raises `problem`, since it needs more than its own graph; it is not
-            logged then.
+        only_looks: whether the transport only discovers remote nodes and endpoints. The nodes and endpoints of this
+            graph
+            are then not announced, which saves creating them on the network.
+        must_join: whether the caller of `join` raises `problem` because it needs the network; the problem is then not
+            logged.
     """
 
     def __init__(
@@ -92,7 +93,7 @@ class BackgroundTransport(ABC):
 
     @abstractmethod
     def _make_engine(self) -> Engine:
-        """Join the domain, in a thread of its own.
+        """Join the domain; runs in a separate thread.
 
         Raises:
             LinkwrightError: the domain cannot be joined.
@@ -100,23 +101,27 @@ class BackgroundTransport(ABC):
 
     @abstractmethod
     def _has_settled(self, quiet: float) -> bool:
-        """Whether discovery counts as complete, seconds after the last news or after joining."""
+        """Return whether discovery counts as complete.
+
+        Args:
+            quiet: seconds since the last change of the remote graph, or since joining.
+        """
 
     @property
     def waits(self) -> bool:
-        """Whether it waits for others without whom the domain cannot be joined, as long as its settings say."""
+        """Whether joining waits for other processes, because the settings require them."""
         return False
 
     # --- for the code that joined ------------------------------------------------------------------------------------
 
     def wait_until_ready(self, timeout: float | None = None) -> bool:
-        """Block until the domain is joined and every endpoint that was requested so far is made.
+        """Block until the domain is joined and every endpoint requested so far is created.
 
         Args:
-            timeout: seconds at most; None for any time.
+            timeout: the longest wait, in seconds; None for no limit.
 
         Returns:
-            Whether it is so; False at once when the domain cannot be joined, or was left.
+            Whether the transport is ready; False immediately if the domain cannot be joined or was left.
         """
         deadline = None if timeout is None else time.monotonic() + timeout
         while not self._decided.wait(_CLOSED_WITHIN) and not self._closed:
@@ -132,10 +137,10 @@ class BackgroundTransport(ABC):
         return done.is_set()
 
     def wait_for_discovery(self, timeout: float = 5.0) -> bool:
-        """Block until discovery has settled: every process has announced itself, and nothing is new.
+        """Block until discovery has settled: every process has announced itself, and there is nothing new.
 
         Args:
-            timeout: seconds at most.
+            timeout: the longest wait, in seconds.
 
         Returns:
             Whether discovery has settled.
@@ -167,7 +172,7 @@ class BackgroundTransport(ABC):
         self._mirror(lambda engine: engine.open_publisher(publisher))
 
     def close_publisher(self, publisher: Publisher[Any]) -> None:
-        """Stop mirroring a publisher once its reliable messages are acknowledged, or no reader is left to do so."""
+        """Stop mirroring a publisher once its reliable messages are acknowledged, or no reader is left."""
         self._mirror(lambda engine: engine.close_publisher(publisher))
 
     def open_subscription(self, subscription: Subscription[Any]) -> None:
@@ -195,45 +200,45 @@ class BackgroundTransport(ABC):
         self._mirror(lambda engine: engine.close_endpoint(client))
 
     def open_presence(self, presence: Presence) -> None:
-        """Show an endpoint that takes no part."""
+        """Announce an endpoint that neither sends nor receives."""
         self._mirror(lambda engine: engine.open_presence(presence))
 
     def close_presence(self, presence: Presence) -> None:
-        """Show it no longer."""
+        """Withdraw an endpoint that neither sends nor receives."""
         self._mirror(lambda engine: engine.close_endpoint(presence))
 
     def look_around(self) -> None:  # noqa: B027 - nothing is to be done where all is discovered anyhow
-        """Discover the graph outside for the next query, where discovery does not run all the time."""
+        """Start discovery for the next query, if discovery does not run continuously."""
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
-        """The nodes of other processes, as far as discovery has come."""
+        """Return the nodes of other processes that have been discovered so far."""
         return self._outside.nodes()
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:
-        """The endpoints of other processes, as far as discovery has come."""
+        """Return the endpoints of other processes that have been discovered so far."""
         return self._outside.endpoints()
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Register a callback for changes of nodes and endpoints outside, called from any thread."""
+        """Register a callback for changes of remote nodes and endpoints; it is called from any thread."""
         self._outside.watch(partial(run_logged, self._logger, "a callback for changes outside", changed))
 
     def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
-        """Register a callback for publishers outside that are lost, called with each from any thread."""
+        """Register a callback for each remote publisher that is lost; it is called from any thread."""
 
         def notify(publisher: EndpointInfo) -> None:
             run_logged(self._logger, "a callback for publishers that are lost", partial(lost, publisher))
 
         self._departed.watch(notify)
-        self._do(lambda _: None)  # processes are looked at from now on
+        self._do(lambda _: None)  # wakes the engine, which checks the processes from now on
 
     def close(self) -> None:
-        """Leave the domain once reliable messages are acknowledged, or a second has passed."""
+        """Leave the domain once reliable messages are acknowledged, at the latest after a second."""
         if self._closed:
             return
         self._closed = True
         self._given_up.set()
         _open_transports.discard(self)
-        if self._starter.ident is not None:  # Ctrl-C may have come before it was started
+        if self._starter.ident is not None:  # Ctrl-C may have arrived before the thread was started
             self._end_joining()
         with self._joining:
             self._has_left = True
@@ -248,18 +253,18 @@ class BackgroundTransport(ABC):
         until = time.monotonic() + _JOINED_WITHIN
         while self._starter.is_alive() and time.monotonic() < until:
             self._starter.join(_CLOSED_WITHIN)
-            if self.waits:  # for other processes, it may be in a call that cannot be interrupted
+            if self.waits:  # it may be in a call that waits for other processes and cannot be interrupted
                 break
 
     def abandon(self) -> None:
-        """In a process that was forked off: take no part."""
+        """Stop using the network in a forked process."""
         self._closed = True
         if self._engine is not None:
             self._engine.abandon()
             self._engine = None
 
     def _mirror(self, work: Callable[[Engine], None]) -> None:
-        """Queue work on an endpoint or node of this process, unless the graph only looks."""
+        """Queue work on an endpoint or node of this process, unless the transport only discovers."""
         if not self._only_looks:
             self._do(work)
 
@@ -281,7 +286,7 @@ class BackgroundTransport(ABC):
                     self._joined_at = time.monotonic()
                     engine.start()
                     engine.wake()
-            if self._has_left:  # `close` has given this thread up
+            if self._has_left:  # `close` no longer waits for this thread
                 engine.close()
         except LinkwrightError as error:
             self.problem = error
@@ -289,7 +294,7 @@ class BackgroundTransport(ABC):
             if not self._must_join and not self._closed:
                 log_join_failure(self._logger, error)
         except RuntimeError:
-            # From Python 3.12 on no thread can be started any more once the main one has ended.
+            # From Python 3.12 on, no thread can be started once the main thread has ended.
             if threading.main_thread().is_alive():
                 raise
         finally:
@@ -316,7 +321,7 @@ if hasattr(os, "register_at_fork"):
 
 
 def log_join_failure(logger: Logger, error: LinkwrightError) -> None:
-    """Log why a domain is not joined."""
+    """Log why a domain cannot be joined."""
     findings = "\n".join(render(diagnostic) for diagnostic in error.diagnostics)
     logger.error(f"{findings}\nThis process continues by itself: other processes do not see its nodes.")
 
@@ -340,7 +345,7 @@ class TransportOptions(TypedDict, total=False):
 
 
 class JoinOptions(TransportOptions, total=False):
-    """How a graph is joined to others."""
+    """The options for joining a graph to others."""
 
     domain_id: int | None
     """Takes the place of ROS_DOMAIN_ID."""
@@ -357,14 +362,14 @@ def join_with(
     why_not: Callable[[Mapping[str, str] | None], Phrase],
     options: JoinOptions,
 ) -> AnyTransport | None:
-    """Attach a transport to a graph; where there is none, the graph continues without the network.
+    """Attach a transport to a graph; without a transport, the graph continues without the network.
 
     Args:
         graph: the graph.
-        name: the logger that reports why there is none.
-        read_settings: reads the settings of an environment and a domain; it may raise LinkwrightError.
-        make: makes the transport from them; it may raise LinkwrightError.
-        why_not: gives the reason why an environment has no transport; empty where it has one.
+        name: the logger that reports why there is no transport.
+        read_settings: reads the settings from an environment and a domain; may raise LinkwrightError.
+        make: creates the transport from the settings; may raise LinkwrightError.
+        why_not: returns the reason why an environment has no transport; empty if it has one.
         options: how the graph is joined.
     """
     logger = graph.get_logger(name)

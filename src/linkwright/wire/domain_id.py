@@ -1,4 +1,4 @@
-"""ROS_DOMAIN_ID: which domain a process is in."""
+"""Read ROS_DOMAIN_ID, the domain that a process is in."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ MAX_DOMAIN_ID = 232
 
 
 def read_domain_id(variables: Mapping[str, str], domain_id: int | None = None) -> int:
-    """The domain of an environment.
+    """Return the domain given by environment variables.
 
     Args:
         variables: the environment variables.
-        domain_id: takes the place of ROS_DOMAIN_ID.
+        domain_id: takes precedence over ROS_DOMAIN_ID.
 
     Raises:
-        LinkwrightError: DDS101, it is none.
+        LinkwrightError: DDS101, the value is not a valid domain.
     """
     text = variables.get("ROS_DOMAIN_ID", "") if domain_id is None else str(domain_id)
     if not text.strip():

@@ -1,4 +1,4 @@
-"""The base of the transports' engines: work that any thread asks for, done by one thread in order."""
+"""The base class of the transports' engines: any thread requests work, and one thread does it in order."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ Work: TypeAlias = "deque[Callable[[Engine], None]]"
 
 
 class Engine(ABC):
-    """Makes, feeds and deletes the mirrors of this process's endpoints, in threads of its own.
+    """Creates, feeds and deletes the mirrors of this process's endpoints, in separate threads.
 
     Args:
-        work: the queue of requests; others append to it and `wake`.
+        work: the queue of requests; other threads append to it and call `wake`.
         logger: logs problems.
     """
 
@@ -40,19 +40,19 @@ class Engine(ABC):
 
     @abstractmethod
     def start(self) -> None:
-        """Begin."""
+        """Start the threads."""
 
     @abstractmethod
     def wake(self) -> None:
-        """Look at the work soon; from any thread."""
+        """Have the queue of requests processed soon; may be called from any thread."""
 
     @abstractmethod
     def close(self) -> None:
-        """End, once reliable messages are on their way or a second has passed."""
+        """End the engine once reliable messages are on their way, at the latest after a second."""
 
     @abstractmethod
     def abandon(self) -> None:
-        """Send nothing more, and end without the parts that need the network: this process was forked off."""
+        """Stop sending in a forked process, and end without the steps that need the network."""
 
     @abstractmethod
     def add_node(self, node: NodeIdentity) -> None:
@@ -84,7 +84,7 @@ class Engine(ABC):
 
     @abstractmethod
     def open_presence(self, presence: Any) -> None:
-        """Show an endpoint that takes no part."""
+        """Announce an endpoint that neither sends nor receives."""
 
     @abstractmethod
     def close_endpoint(self, endpoint: Any) -> None:
@@ -93,13 +93,13 @@ class Engine(ABC):
     # --- requests ----------------------------------------------------------------------------------------------------
 
     def _do_some_work(self) -> None:
-        """Make and delete the endpoints that were asked for, for a limited time."""
+        """Process requests to create and delete endpoints, for a limited time."""
         until = time.monotonic() + _WORK_SPAN
         while self._work and time.monotonic() < until:
             self._do_next()
 
     def _do_all_work(self) -> None:
-        """The same without a limit, before the engine ends."""
+        """Process all requests before the engine ends, without a time limit."""
         while self._work:
             self._do_next()
 
@@ -107,13 +107,13 @@ class Engine(ABC):
         guarded(partial(self._work.popleft(), self), self._report)
 
     def _report(self, error: Exception) -> None:
-        """Log that an endpoint is not mirrored: the library's refusal, or the traceback of an error of ours."""
+        """Log that an endpoint is not mirrored: the library's refusal, or the traceback of an error of Linkwright."""
         lines = [str(error)] if isinstance(error, self.refusal) else traceback.format_exception(error)
         self._logger.error("A part of the graph is not visible outside this process: " + "".join(lines).rstrip())
 
 
 def ends_by_error() -> bool:
-    """Whether this program has ended with an uncaught exception; Ctrl-C is none of these."""
+    """Return whether this program is ending because of an uncaught exception other than Ctrl-C."""
     error = getattr(sys, "last_value", None)
     is_interactive = hasattr(sys, "ps1")
     return isinstance(error, Exception) and not isinstance(error, ExternalShutdownException) and not is_interactive

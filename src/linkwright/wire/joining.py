@@ -1,7 +1,7 @@
-"""Which transport a process has: DDS or Zenoh.
+"""Choose the transport of a process: DDS or Zenoh.
 
-``RMW_IMPLEMENTATION=rmw_zenoh_cpp`` asks for Zenoh, as it does in ROS 2, and any other value for DDS. Where it is not
-set, DDS is taken, and Zenoh where DDS is not installed and Zenoh is.
+``RMW_IMPLEMENTATION=rmw_zenoh_cpp`` selects Zenoh, as in ROS 2, and any other value selects DDS. If it is not set, DDS
+is used, or Zenoh if only Zenoh is installed.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
 
 def middleware(environment: Mapping[str, str] | None = None) -> str:
-    """The name of the middleware that this process is compatible with: `ZENOH` or `CYCLONE`.
+    """Return the name of the middleware that this process is compatible with: `ZENOH` or `CYCLONE`.
 
     Args:
-        environment: the environment variables; those of the process when left out.
+        environment: the environment variables; those of this process if omitted.
     """
     variables = os.environ if environment is None else environment
     requested = variables.get(MIDDLEWARE, "").strip()
@@ -40,10 +40,10 @@ def middleware(environment: Mapping[str, str] | None = None) -> str:
 
 
 def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
-    """The reason why this process does not communicate with others; empty when it does.
+    """Return the reason why this process does not communicate with others; empty if it does.
 
     Args:
-        environment: the environment variables; those of the process when left out.
+        environment: the environment variables; those of this process if omitted.
     """
     variables = os.environ if environment is None else environment
     if middleware(variables) == ZENOH:
@@ -63,12 +63,12 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
 
 
 def available(environment: Mapping[str, str] | None = None) -> bool:
-    """Whether other processes can be reached."""
+    """Return whether other processes can be reached."""
     return not why_not(environment)
 
 
 def check_security(environment: Mapping[str, str] | None = None) -> None:
-    """Refuse to join where only nodes with DDS security may; a process that does not join needs none.
+    """Refuse to join if only nodes with DDS security may; a process that does not join needs no security.
 
     Raises:
         LinkwrightError: DDS121, security is enforced.
@@ -78,10 +78,10 @@ def check_security(environment: Mapping[str, str] | None = None) -> None:
 
 
 def check_settings(environment: Mapping[str, str] | None = None) -> None:
-    """Read the settings that joining would read.
+    """Read the settings that joining would use, to report errors in them.
 
     Raises:
-        LinkwrightError: DDS101, ROS_DOMAIN_ID is not a domain; DDS111, a setting of Zenoh is not well formed.
+        LinkwrightError: DDS101, ROS_DOMAIN_ID is not a valid domain; DDS111, a setting of Zenoh is malformed.
     """
     if middleware(environment) == ZENOH:
         from linkwright.wire.zenoh.settings import read_settings as read_zenoh_settings
@@ -94,17 +94,17 @@ def check_settings(environment: Mapping[str, str] | None = None) -> None:
 
 
 def join(graph: Graph, **options: Unpack[JoinOptions]) -> BackgroundTransport | None:
-    """Connect a graph with those of other processes. It happens in the background; nothing waits for it.
+    """Connect a graph to the graphs of other processes, in the background.
 
-    Problems are logged, and the graph continues without the network. Settings of ROS 2 that are not followed are
-    logged once in a process.
+    Problems are logged, and the graph continues without the network. Unsupported ROS 2 settings are logged once in a
+    process.
 
     Args:
         graph: the graph; the transport attaches itself to it.
         options: see `JoinOptions`.
 
     Returns:
-        The transport; None where there is none, it is switched off, or wrongly set.
+        The transport; None if no transport is available, it is switched off, or its settings are wrong.
 
     Raises:
         LinkwrightError: DDS121, security is enforced.

@@ -1,4 +1,4 @@
-"""Calls whose failure is reported and does not end the thread that makes them."""
+"""Call functions so that a failure is reported and does not end the calling thread."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ R = TypeVar("R")
 
 
 def guarded(call: Callable[[], R], report: Callable[[Exception], object] | None = None) -> R | None:
-    """Call a function; an exception is reported, not raised.
+    """Call a function; report an exception instead of raising it.
 
     Args:
         call: the function.
-        report: receives the error. Where there is none, or it fails itself, Python reports the error as one that ends a
-            thread (``threading.excepthook``).
+        report: receives the error. If it is None, or fails itself, Python reports the error as one that ends a thread
+            (``threading.excepthook``).
 
     Returns:
-        Its return value; None where it failed.
+        The return value of the function; None if it failed.
     """
     try:
         return call()

@@ -1,4 +1,6 @@
-"""UDP multicast without DDS, for commands that try whether the network carries it: the group and port are ros2cli's."""
+"""UDP multicast without DDS, for commands that test whether the network supports it, with the group and port of
+ros2cli.
+"""
 
 from __future__ import annotations
 
@@ -14,10 +16,10 @@ LARGEST = 4096
 
 
 def open_sender(ttl: int | None = None) -> socket.socket:
-    """A socket for `send`.
+    """Open a socket for `send`.
 
     Args:
-        ttl: how many routers a datagram passes; the system's 1, which none passes, when None.
+        ttl: how many hops a datagram may travel; None for the system's default of 1, which no router passes on.
     """
     sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     if ttl is not None:
@@ -29,7 +31,7 @@ def send(sender: socket.socket, data: bytes, group: str = GROUP, port: int = POR
     """Send a datagram.
 
     Raises:
-        LinkwrightError: CLI461, the system refuses to.
+        LinkwrightError: CLI461, the system refuses to send it.
     """
     try:
         sender.sendto(data, (group, port))
@@ -38,10 +40,10 @@ def send(sender: socket.socket, data: bytes, group: str = GROUP, port: int = POR
 
 
 def open_receiver(group: str = GROUP, port: int = PORT) -> socket.socket:
-    """A socket on which the datagrams of a group arrive, also where other programs listen to it.
+    """Open a socket that receives the datagrams of a group, even if other programs receive them too.
 
     Raises:
-        LinkwrightError: CLI461, the system refuses it.
+        LinkwrightError: CLI461, the system refuses to open it.
     """
     receiver = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:

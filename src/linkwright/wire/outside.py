@@ -1,4 +1,4 @@
-"""The graph outside of this process, as a transport's discovery finds it."""
+"""The graph outside this process, as discovered by a transport."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.graph.names.rules import NodeIdentity
 
 
 class Outside(ABC):
-    """The nodes and endpoints that discovery found; written by one thread, read by any."""
+    """The discovered nodes and endpoints; written by one thread, read by any."""
 
     def __init__(self) -> None:
         self._watchers: list[Callable[[], None]] = []
@@ -20,14 +20,14 @@ class Outside(ABC):
 
     @abstractmethod
     def nodes(self) -> list[NodeIdentity]:
-        """The nodes of other processes."""
+        """Return the nodes of other processes."""
 
     @abstractmethod
     def endpoints(self) -> list[EndpointInfo]:
-        """The endpoints of other processes."""
+        """Return the endpoints of other processes."""
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Register a callback for changes, called in the thread of discovery."""
+        """Register a callback for changes; it is called in the discovery thread."""
         self._watchers.append(changed)
 
     def announce(self) -> None:

@@ -1,7 +1,7 @@
-"""Requests and responses as bytes and back, for all transports.
+"""Serialize and deserialize requests and responses, for all transports.
 
-They are handed on in threads of transports, which others depend on: a failure there is logged as the failure of a
-callback is, and ends there.
+They are passed on in transport threads, which other endpoints depend on. A failure there is logged like the failure of
+a callback, and does not propagate.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ from linkwright.messages import deserialize, serialize
 
 
 def hand_request_on(body: bytes, service: Any, reply: Callable[[Any], None], request_id: RequestId) -> bool:
-    """Have a service answer a request.
+    """Pass a request to a service.
 
     Args:
-        body: CDR with its header; handed on as it is to a service that is raw.
+        body: CDR with its header; passed on unchanged to a raw service.
         service: the service.
         reply: called with the response.
         request_id: the client and the request's number.
 
     Returns:
-        Whether the service has it; why not is logged.
+        Whether the service accepted it; if not, the reason is logged.
     """
     try:
         request = _read_or_warn(body, "Request", service)
@@ -37,10 +37,10 @@ def hand_request_on(body: bytes, service: Any, reply: Callable[[Any], None], req
 
 
 def hand_response_on(body: bytes, client: Any, answer: Callable[[Any], None]) -> None:
-    """Give a client's response to the caller that waits for it; a response that cannot be read is logged.
+    """Pass a response to the caller that waits for it; a response that cannot be read is logged.
 
     Args:
-        body: CDR with its header; handed on as it is to a client that is raw.
+        body: CDR with its header; passed on unchanged to a raw client.
         client: the client.
         answer: receives the response.
     """
@@ -53,7 +53,7 @@ def hand_response_on(body: bytes, client: Any, answer: Callable[[Any], None]) ->
 
 
 def _read_or_warn(body: bytes, half: Literal["Request", "Response"], endpoint: Any) -> Any:
-    """A request or response; None when it cannot be read, which is logged."""
+    """Deserialize a request or response; if that fails, log the reason and return None."""
     if endpoint.raw:
         return body
     try:
@@ -64,5 +64,5 @@ def _read_or_warn(body: bytes, half: Literal["Request", "Response"], endpoint: A
 
 
 def written(message: Any) -> bytes:
-    """The CDR of a request or response, with its header; of one that is bytes, those."""
+    """Return the CDR of a request or response, with its header; bytes are returned unchanged."""
     return message if type(message) is bytes else serialize(message)

@@ -1,4 +1,4 @@
-"""The environment variable that keeps a process to itself."""
+"""The environment variable that disables communication with other processes."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ SWITCH = "LINKWRIGHT_DDS"
 
 
 def is_switched_off(environment: Mapping[str, str] | None = None) -> bool:
-    """Whether this process is to keep to itself.
+    """Return whether communication with other processes is switched off.
 
     Args:
-        environment: the environment variables; those of the process when left out.
+        environment: the environment variables; those of this process if omitted.
     """
     variables = os.environ if environment is None else environment
     return variables.get(SWITCH, "1") == "0"
 
 
 def switched_off() -> Phrase:
-    """The reason to give for it."""
+    """Return the text that states why communication is switched off."""
     return phrase("the environment variable {switch} is 0", switch=SWITCH)

@@ -1,7 +1,7 @@
-"""Settings of ROS 2 in the environment that no transport here follows: security, discovery servers, other middlewares.
+"""ROS 2 settings in the environment that no transport supports: security, discovery servers, other middlewares.
 
-A real node acts on them: it refuses nodes without certificates, or is found through a server alone. Ours would start
-all the same and find no other node, or send in the clear what the user believes to be encrypted.
+A real node applies them: it refuses nodes without certificates, or is found only through a server. Ours would start
+anyway and find no other node, or send unencrypted data that the user believes to be encrypted.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ _reported: set[str] = set()
 
 
 def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> None:
-    """Refuse to join where security is enforced: no node may be in the graph without it (SROS 2).
+    """Raise an error if security is enforced, because no node may then join the graph without it (SROS 2).
 
     Args:
-        environment: the environment variables; those of the process when left out.
+        environment: the environment variables; those of this process if omitted.
 
     Raises:
         LinkwrightError: DDS121, security is enforced.
@@ -57,10 +57,10 @@ def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> No
 
 
 def unfollowed_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
-    """Return a warning for each setting that is not followed.
+    """Return a warning for each setting that is not supported.
 
     Args:
-        environment: the environment variables; those of the process when left out.
+        environment: the environment variables; those of this process if omitted.
     """
     variables = os.environ if environment is None else environment
     found = []
@@ -111,12 +111,12 @@ def unfollowed_settings(environment: Mapping[str, str] | None = None) -> list[Di
 
 
 def new_unfollowed_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
-    """Return those of the `unfollowed_settings` that were not returned before: each is reported once in a process."""
+    """Return the `unfollowed_settings` not yet returned in this process, so that each is reported once."""
     found = [setting for setting in unfollowed_settings(environment) if setting.code not in _reported]
     _reported.update(diagnostic.code for diagnostic in found)
     return found
 
 
 def _asks_for_security(variables: Mapping[str, str]) -> bool:
-    """Whether rcl would turn security on: it takes this spelling alone."""
+    """Return whether rcl would enable security, which requires exactly this spelling."""
     return variables.get("ROS_SECURITY_ENABLE") == "true"

@@ -1,9 +1,9 @@
-"""Samples wait until readers have acknowledged the large ones before them.
+"""Hold samples back until readers have acknowledged the large samples before them.
 
-A reader of Fast DDS that has received a sample in part asks for the rest of it. When a newer sample has taken its place
-in the writer's history, Cyclone answers with a GAP, and Fast DDS up to 3.6 then frees the sample without forgetting it:
-the next ``take`` of the reader never returns (`docs/decisions/0095-large-messages-to-fast-dds.md`). So no sample takes
-the place of a large one that may still be asked for. Newer messages replace the samples that wait here instead.
+A reader of Fast DDS that has received part of a sample requests the rest. If a newer sample has replaced that sample in
+the writer's history, Cyclone answers with a GAP, and Fast DDS up to 3.6 then frees the sample but keeps a reference to
+it: the next ``take`` of the reader never returns (`docs/decisions/0095-large-messages-to-fast-dds.md`). Therefore no
+sample replaces a large one that may still be requested. Newer messages replace the samples that wait here instead.
 """
 
 from __future__ import annotations
@@ -18,14 +18,16 @@ PATIENCE = 3.0
 
 
 class Backlog:
-    """The samples that wait to be written by one reliable writer that keeps the last samples.
+    """A queue of samples for one reliable writer that keeps only the last samples.
 
     Args:
-        depth: how many samples the writer keeps.
-        fragment_size: the bytes of a sample that go into one packet; larger samples may be received in part.
+        depth: the number of samples that the writer keeps.
+        fragment_size: the maximum size in bytes of a sample that is sent in one packet; larger samples may be received
+            in
+            part.
         write: writes a sample.
-        acknowledged: whether all readers have acknowledged all written samples.
-        matters: whether a reader listens that a replaced sample would harm.
+        acknowledged: returns whether all readers have acknowledged all written samples.
+        matters: returns whether there is a reader that a replaced sample would harm.
         now: the steady clock, in seconds.
     """
 
@@ -47,10 +49,10 @@ class Backlog:
         self._waiting: deque[bytes] = deque(maxlen=depth)
         self._written = 0
         self._late_since: float | None = None
-        self._lock = threading.RLock()  # a warning of a write that failed may go the same way
+        self._lock = threading.RLock()  # reentrant: the warning of a failed write may be sent here
 
     def send(self, sample: bytes) -> bool:
-        """Write a sample, or let it wait; whether a sample waits."""
+        """Write a sample, or queue it; return whether a sample is queued."""
         with self._lock:
             if not self._written and len(sample) <= self._fragment_size:
                 self._write(sample)
@@ -59,7 +61,7 @@ class Backlog:
             return self._write_what_fits()
 
     def review(self) -> bool:
-        """Write the samples that may be written by now; whether a sample still waits."""
+        """Write the queued samples that may be written now; return whether a sample is still queued."""
         with self._lock:
             return self._write_what_fits()
 
@@ -70,7 +72,7 @@ class Backlog:
         return bool(self._waiting)
 
     def _has_room(self) -> bool:
-        """Whether the next sample replaces none that may still be asked for."""
+        """Return whether the next sample would not replace a sample that may still be requested."""
         if self._written < self._depth:
             return True
         if self._acknowledged():

@@ -1,9 +1,9 @@
-"""Keeping announcements by multicast inside the machine, on Linux.
+"""Keep multicast announcements inside the machine, on Linux.
 
 A time to live of 0 is meant to do that. But Linux drops such a packet only on an interface where the machine itself is
-a member of the packet's group (``ip_mc_output``); on any other interface it sends the packet out. So the process joins
-the group on each of its interfaces, with its own address as the only source: packets of other machines to the group
-stay refused.
+a member of the packet's group (``ip_mc_output``); on any other interface it sends the packet. The process therefore
+joins the group on each of its interfaces, with its own address as the only source: packets of other machines to the
+group are still refused.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ _Membership = struct.Struct("4s4s4s")
 
 
 def confine(addresses: Sequence[str]) -> socket.socket | None:
-    """Keep announcements with a time to live of 0 in the machine.
+    """Keep announcements with a time to live of 0 inside the machine.
 
     Args:
-        addresses: the IPv4 addresses of the interfaces beside loopback.
+        addresses: the IPv4 addresses of the interfaces other than loopback.
 
     Returns:
-        A socket that must stay open as long as announcements are sent; None on systems that need none.
+        A socket that must stay open while announcements are sent; None on systems that do not need one.
 
     Raises:
         OSError: the system refuses a membership, so announcements could leave the machine.

@@ -1,12 +1,13 @@
-"""The C interface of Eclipse Cyclone DDS, as far as it is used here, bound to the library of the `cyclonedds` wheel.
+"""Bindings for the parts of the C interface of Eclipse Cyclone DDS that Linkwright uses, from the `cyclonedds` wheel.
 
-The Python classes of `cyclonedds` are built over the same functions. Two of their properties do not suit a process that
-publishes from the thread of an event loop: `DataWriter.write` keeps Python's global lock while it waits for slow
-readers, and every entity's `__del__` deletes it in whatever thread the garbage collector runs. So only functions
-without an equal in C are used from there: topics for types described in Python, and taking samples as bytes.
+The Python classes of `cyclonedds` are built on the same functions. Two of their properties do not suit a process that
+publishes from the thread of an event loop: `DataWriter.write` holds Python's global interpreter lock (GIL) while it
+waits for slow readers, and every entity's `__del__` deletes it in whatever thread the garbage collector runs. So the
+Python package is used only for functions that C does not offer: topics for types described in Python, and taking
+samples as bytes.
 
-Functions that may wait are called with the global lock released, the quick ones with it held: giving it up costs up to
-five milliseconds each time when another thread computes.
+Functions that may wait are called with the GIL released, and quick functions with the GIL held: releasing it costs up
+to five milliseconds each time when another thread is computing.
 """
 
 from __future__ import annotations
@@ -46,13 +47,13 @@ SUBSCRIPTION_MATCHED = 1 << 12
 
 
 class Sample(c.Structure):
-    """A sample for a writer of a type described in Python: serialised bytes."""
+    """A sample for a writer of a type described in Python: serialized bytes."""
 
     _fields_ = (("data", c.c_char_p), ("size", c.c_size_t))
 
 
 class MatchedStatus(c.Structure):
-    """dds_publication_matched_status_t and dds_subscription_matched_status_t."""
+    """The C structures dds_publication_matched_status_t and dds_subscription_matched_status_t."""
 
     _fields_ = (
         ("total_count", c.c_uint32),
@@ -64,13 +65,13 @@ class MatchedStatus(c.Structure):
 
 
 class CountStatus(c.Structure):
-    """dds_sample_lost_status_t."""
+    """The C structure dds_sample_lost_status_t."""
 
     _fields_ = (("total_count", c.c_uint32), ("total_count_change", c.c_int32))
 
 
 class LivelinessChangedStatus(c.Structure):
-    """dds_liveliness_changed_status_t."""
+    """The C structure dds_liveliness_changed_status_t."""
 
     _fields_ = (
         ("alive_count", c.c_uint32),
@@ -158,10 +159,10 @@ _WAITING: dict[str, tuple[Any, tuple[Any, ...]]] = {
 
 
 class CycloneError(Exception):
-    """A call of Cyclone DDS failed.
+    """Raised when a call of Cyclone DDS fails.
 
     Attributes:
-        code: its return code, below zero.
+        code: its return code, which is negative.
     """
 
     def __init__(self, code: int, what: str) -> None:
@@ -170,11 +171,11 @@ class CycloneError(Exception):
 
 
 class Cyclone:
-    """The bound functions, under their names in C, and the used parts of the Python package."""
+    """The bound functions, under their C names, and the parts of the Python package that are used."""
 
     def __init__(self) -> None:
         _open_package()
-        from cyclonedds import _clayer  # loads the shared library that the wheel carries
+        from cyclonedds import _clayer  # loads the shared library of the wheel
         from cyclonedds.internal import DDS
 
         path = DDS._dll_handle._name
@@ -194,13 +195,13 @@ class Cyclone:
         raise AttributeError(f"'{name}' of Cyclone DDS is not bound")
 
     def guid(self, entity: int) -> bytes:
-        """The globally unique identifier of an entity, 16 bytes."""
+        """Return the globally unique identifier of an entity, 16 bytes."""
         buffer = c.create_string_buffer(16)
         checked(self.dds_get_guid(entity, buffer), "asking for an identifier")
         return buffer.raw
 
     def matched(self, entity: int, *, writer: bool) -> list[int]:
-        """Instance handles of the remote endpoints that a writer or a reader is connected with."""
+        """Return the instance handles of the remote endpoints that a writer or a reader is matched with."""
         function = self.dds_get_matched_subscriptions if writer else self.dds_get_matched_publications
         size = 64
         while True:
@@ -211,7 +212,7 @@ class Cyclone:
             size = count + 16
 
     def writer_guid(self, reader: int, handle: int) -> bytes:
-        """The globally unique identifier of a remote writer that a reader is connected with; empty when it left."""
+        """Return the GUID of a remote writer that a reader is matched with; empty if the writer has left."""
         data = self.dds_get_matched_publication_data(reader, handle)
         if not data:
             return b""
@@ -221,7 +222,7 @@ class Cyclone:
             self.dds_builtintopic_free_endpoint(data)
 
     def user_data(self, qos: int) -> bytes:
-        """The USER_DATA of a set of policies."""
+        """Return the USER_DATA of a set of policies."""
         value, size = c.c_void_p(), c.c_size_t()
         if not self.dds_qget_userdata(qos, c.byref(value), c.byref(size)) or not value.value:
             return b""
@@ -231,17 +232,17 @@ class Cyclone:
             self.dds_free(value)
 
     def entity_name(self, qos: int) -> str:
-        """The name that a participant gave itself; empty when it did not."""
+        """Return the name that a participant has given itself; empty if it has none."""
         value = c.c_void_p()
         return self._text(value) if self.dds_qget_entity_name(qos, c.byref(value)) else ""
 
     def property(self, qos: int, name: str) -> str:
-        """A property that a participant announces; empty where it announces none of this name."""
+        """Return the value of a property that a participant announces; empty if it does not announce the property."""
         value = c.c_void_p()
         return self._text(value) if self.dds_qget_prop(qos, name.encode(), c.byref(value)) else ""
 
     def _text(self, value: c.c_void_p) -> str:
-        """A text that Cyclone has given, which is freed."""
+        """Return a string that Cyclone has allocated, and free it."""
         if not value.value:
             return ""
         try:
@@ -251,9 +252,10 @@ class Cyclone:
 
 
 def _open_package() -> None:
-    """Import modules of the package `cyclonedds` when they are used, not all with the first of them.
+    """Make the package `cyclonedds` import its modules on first use instead of all at once.
 
-    Its ``__init__`` imports them all, which takes several times as long as those that are used here. Other code that
+    Its ``__init__`` imports them all, which takes several times as long as importing the modules used here. Other code
+    that
     imports the package in this process finds everything in it as before.
     """
     spec = find_spec("cyclonedds")
@@ -275,15 +277,19 @@ def _submodule(name: str) -> Any:
 
 @lru_cache(maxsize=1)
 def load() -> Cyclone:
-    """The library, loaded on first use."""
+    """Return the library, which is loaded on first use."""
     return Cyclone()
 
 
 def checked(code: int, what: str) -> int:
-    """The result of a call.
+    """Return the result of a call if it succeeded.
+
+    Args:
+        code: the return code of the call.
+        what: names the attempt, for the error.
 
     Raises:
-        CycloneError: it failed; `what` names the attempt.
+        CycloneError: the call failed.
     """
     if code < 0:
         raise CycloneError(code, what)
@@ -291,17 +297,17 @@ def checked(code: int, what: str) -> int:
 
 
 def describe(code: int) -> str:
-    """A return code in words."""
+    """Return the meaning of a return code."""
     text: bytes = load().dds_strretcode(code)
     return text.decode(errors="replace") if text else f"error {code}"
 
 
 def write(writer: int, data: bytes) -> int:
-    """Write a sample; may wait for slow readers, with Python's global lock released.
+    """Write a sample; may wait for slow readers, with the GIL released.
 
     Args:
         writer: the writer.
-        data: CDR with its header; it is padded to a multiple of four as RTPS requires.
+        data: CDR with its header; it is padded to a multiple of four bytes as RTPS requires.
 
     Returns:
         Zero, or Cyclone's return code.

@@ -1,9 +1,9 @@
-"""Tells publishers that were lost (killed, crashed, out of reach) from those that left in order.
+"""Distinguish publishers that were lost (killed, crashed, out of reach) from publishers that left in order.
 
-A publisher that leaves announces it: ROS 2 withdraws an endpoint from ``ros_discovery_info`` before it takes it out of
-the domain (rmw_dds_common), and so do we. An endpoint that is gone and was not withdrawn is lost: its participant was
-silent for as long as its lease is, or was taken out of the domain at the end of a process that failed. Where a
-participant states which process of this machine it is, the end of the process counts, and the lease is not waited for.
+A publisher that leaves announces it: ROS 2 withdraws an endpoint from ``ros_discovery_info`` before it removes it from
+the domain (rmw_dds_common), and so do we. An endpoint that disappears without being withdrawn is lost: its participant
+was silent for longer than its lease, or was removed from the domain when a process failed. If a participant announces
+its process on this machine, the end of that process decides, without waiting for the lease to expire.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ class _Gone:
 
     Attributes:
         endpoint: the writer.
-        node: whose it was.
-        due: when it counts as lost, by the steady clock; None until all that had come by then was taken.
+        node: the node that the writer belongs to.
+        due: when the writer counts as lost, by the steady clock; None until all pending announcements have been read.
     """
 
     endpoint: RemoteEndpoint
@@ -45,10 +45,10 @@ class _Gone:
 
 
 class Departures:
-    """Judges how publishers left; everything except `watch` happens in the thread of discovery.
+    """Judges how publishers left; everything except `watch` runs in the discovery thread.
 
     Args:
-        remote: the graph outside; it calls `endpoint_left` and `announced`.
+        remote: the remote graph, which calls `endpoint_left` and `announced`.
         now: the steady clock, in seconds.
     """
 
@@ -62,22 +62,31 @@ class Departures:
         remote.departures = self
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
-        """Register a callback for lost publishers, called with each in the thread of discovery."""
+        """Register a callback for each lost publisher; it is called in the discovery thread."""
         self._watchers.append(lost)
 
     def endpoint_left(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
-        """Note that an endpoint disappeared; `node` still announces it, or is None where it was withdrawn."""
+        """Handle the disappearance of an endpoint.
+
+        Args:
+            endpoint: the endpoint.
+            node: the node that still announces it; None if it was withdrawn.
+        """
         if self._watchers and endpoint.is_writer and node is not None and endpoint.participant not in self._reported:
             self._gone.append(_Gone(endpoint, node))
 
     def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
-        """Note what a participant announces now: endpoints that disappeared and are not announced were withdrawn."""
+        """Handle an announcement: endpoints that disappeared and are not in it were withdrawn."""
         self._gone = [
             gone for gone in self._gone if gone.endpoint.participant != participant or gone.endpoint.guid in endpoints
         ]
 
     def review(self) -> float | None:
-        """Report the publishers that count as lost by now; seconds until it is to be called again, or None."""
+        """Report the publishers that count as lost by now.
+
+        Returns:
+            The seconds until the next call, or None if no call is needed.
+        """
         if not self._watchers:
             return None
         self._review_gone()
@@ -96,7 +105,7 @@ class Departures:
         self._gone = waiting
 
     def _review_processes(self) -> bool:
-        """Look at the processes of participants; whether there are any."""
+        """Check the processes of participants on this machine; return whether there are any."""
         now = self._now()
         here = [participant for participant in self._remote.participants() if participant.process is not None]
         dead = {participant.guid for participant in here if participant.has_died()}

@@ -1,4 +1,4 @@
-"""Discovery: Cyclone's builtin topics and ``ros_discovery_info``."""
+"""Discovery through Cyclone's builtin topics and ``ros_discovery_info``."""
 
 from __future__ import annotations
 
@@ -49,18 +49,21 @@ _READER_QOS = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL, history
 
 
 class Discovery:
-    """Fills the tables of the graph outside and publishes the graph inside.
+    """Fills the tables of the remote graph and publishes the graph of this process.
 
     A gid has 24 bytes for ROS 2 up to Humble and 16 from Iron on, and the wrong size harms the nodes that receive it.
-    Ours has the size that the first ROS 2 node heard uses; where both are heard, that of the older, whose
-    ``ros2 node list`` would fail otherwise. Processes of Linkwright understand both and give no evidence.
+    Ours has the size used by the ROS 2 nodes that have been discovered. If both sizes occur, it has the older size,
+    because
+    ``ros2 node list`` of the older distribution would fail otherwise. Processes of Linkwright understand both sizes and
+    are
+    ignored here.
 
     Args:
-        participant: ours.
-        thread: where everything of this class happens.
+        participant: our participant.
+        thread: the thread in which everything of this class runs.
         remote: the tables.
         types: descriptions of types.
-        gid_size: the gid's size as long as no ROS 2 node was heard.
+        gid_size: the size of a gid until a ROS 2 node is discovered.
     """
 
     def __init__(
@@ -93,7 +96,7 @@ class Discovery:
             handler()
 
     def publish(self, nodes: Sequence[NodeEntities]) -> None:
-        """Announce our nodes, and which endpoints each has."""
+        """Announce our nodes and the endpoints of each."""
         self._nodes = nodes
         info = ParticipantEntities(self._participant.guid, nodes)
         write(self._writer[1], encode(info, self.gid_size))
@@ -136,13 +139,16 @@ class Discovery:
         self._remote.add_participant(RemoteParticipant(guid, facts.get("enclave", "/"), name, process, host))
 
     def _host_of(self, qos: int) -> str:
-        """The machine of a participant, as Fast DDS and Cyclone announce it; empty where neither does."""
+        """Return the machine of a participant, as Fast DDS and Cyclone announce it; empty if it is not announced."""
         return next((host for host, _ in announced_processes(partial(self._dds.property, qos)) if host), "")
 
     def _process_of(self, qos: int) -> int | None:
-        """The process of a participant, as Fast DDS and Cyclone announce it; None unless it runs on this machine.
+        """Return the process id that Fast DDS or Cyclone announces for a participant; None unless it runs on this
+        machine.
 
-        One in a container may have the name of this machine and a number that is another process here, or none.
+        A process in a container may have the host name of this machine and an id that belongs to another process here,
+        or to
+        none.
         """
         if not process_namespace():
             return None
@@ -179,7 +185,11 @@ class Discovery:
         return len(samples) == _AT_ONCE
 
     def ask_silent(self) -> float | None:
-        """Ask participants that have not announced their nodes for them; seconds until the next call, or None."""
+        """Request the nodes of participants that have not announced them.
+
+        Returns:
+            The seconds until the next call, or None if no call is needed.
+        """
         return self._requests.review(is_complete=self._remote.all_announced())
 
     def _listen_again(self) -> Callable[[], None]:
@@ -220,12 +230,12 @@ class Discovery:
 
 
 def announced_processes(property_of: Callable[[str], str]) -> Iterator[tuple[str, str]]:
-    """The host and the number of a participant's process, as each vendor announces them.
+    """Yield the host and the id of a participant's process, as each vendor announces them.
 
-    Fast DDS 3 names its machine by the machine's id, for which this machine's name stands here.
+    Fast DDS 3 identifies its machine by the machine id; the id of this machine is replaced by its host name.
 
     Args:
-        property_of: the value of a property of the participant; empty where it has none.
+        property_of: returns the value of a property of the participant; empty if it has no such property.
     """
     for host, process in _PROCESS_PROPERTIES:
         name = property_of(host).partition(":")[0]
@@ -234,7 +244,7 @@ def announced_processes(property_of: Callable[[str], str]) -> Iterator[tuple[str
 
 @lru_cache(maxsize=1)
 def machine_id() -> str:
-    """The machine's own id, as systemd keeps it; empty where there is none."""
+    """Return the machine's id from systemd; empty if there is none."""
     try:
         return Path("/etc/machine-id").read_text(encoding="ascii").strip()
     except (OSError, UnicodeError):
@@ -242,7 +252,7 @@ def machine_id() -> str:
 
 
 def _pointer(qos: int) -> int:
-    """Policies are read where they are needed, as long as the sample is on loan."""
+    """Return the pointer itself: policies are read on demand, while the sample is on loan."""
     return qos
 
 
@@ -254,12 +264,15 @@ class DiscoveryRequests:
     """Listens with a second reader of ``ros_discovery_info`` until every participant has announced its nodes.
 
     Otherwise some would announce them only after seconds. A writer of Fast DDS repeats its last announcement to a
-    reader when it discovers the reader. Often that is before Cyclone knows the writer, so that it is lost; Fast DDS
-    ignores the request of Cyclone to repeat it, and repeats it after 3 s by itself. A reader that is made when the
-    writer is known receives it within milliseconds.
+    reader
+    when it discovers the reader. Often that happens before Cyclone knows the writer, so the announcement is lost. Fast
+    DDS
+    ignores Cyclone's request to repeat it, and repeats it only after 3 s. A reader that is created once the writer is
+    known
+    receives the announcement within milliseconds.
 
     Args:
-        listen: makes such a reader; gives a function that deletes it.
+        listen: creates such a reader; returns a function that deletes it.
     """
 
     def __init__(self, listen: Callable[[], Callable[[], None]]) -> None:
@@ -269,13 +282,13 @@ class DiscoveryRequests:
         self._due = 0.0
 
     def review(self, *, is_complete: bool) -> float | None:
-        """Ask if it is time to.
+        """Send a request if one is due.
 
         Args:
-            is_complete: whether all have announced theirs.
+            is_complete: whether all participants have announced their nodes.
 
         Returns:
-            Seconds after which to check again; None when all have announced theirs, or were asked often enough.
+            Seconds until the next check; None when all have announced their nodes, or have been asked often enough.
         """
         now = time.monotonic()
         if is_complete:

@@ -1,7 +1,7 @@
-"""The message of ``ros_discovery_info`` as bytes: which nodes a participant has, and which endpoints belong to each.
+"""Encode and decode the message of ``ros_discovery_info``: the nodes of a participant, and the endpoints of each.
 
-It is read and written by hand because its layout depends on the peer: a gid has 24 bytes up to Humble and 16 from Iron
-on (`rmw_dds_common/msg/Gid`), and both may be heard in one process.
+The encoding is implemented here because the layout depends on the peer: a gid has 24 bytes up to Humble and 16 from
+Iron on (`rmw_dds_common/msg/Gid`), and one process may receive both.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class ParticipantEntities:
 
 
 def encode(info: ParticipantEntities, gid_size: int) -> bytes:
-    """The sample as CDR with its header."""
+    """Return a sample as CDR with its header."""
     parts = bytearray(info.participant.ljust(gid_size, b"\0"))
     padding = bytes(gid_size - GID_SIZE)
     _count(parts, len(info.nodes))
@@ -54,9 +54,10 @@ def encode(info: ParticipantEntities, gid_size: int) -> bytes:
 
 
 def decode(data: bytes) -> ParticipantEntities | None:
-    """A sample of either layout; None when it is neither.
+    """Decode a sample of either layout; return None if it has neither.
 
-    The layout is the one that fits to the last byte; where both do, there are no gids in it and both give the same.
+    The layout is the one that matches the length exactly. If both match, the sample has no gids, and both give the same
+    result.
     """
     for gid_size in (OLD_GID_SIZE, GID_SIZE):
         try:
@@ -109,7 +110,7 @@ class _Reader:
         return self._bytes(self._count(limit=1))[:-1].decode()
 
     def _count(self, limit: int = 4) -> int:
-        """A length, at most as many as could follow."""
+        """Read a length; raise an error if that many items cannot follow."""
         self._offset += -self._offset % 4
         (count,) = struct.unpack_from(self._order + "I", self._data, self._offset)
         self._offset += 4

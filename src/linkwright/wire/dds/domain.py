@@ -1,4 +1,4 @@
-"""A DDS domain as readers and writers use it."""
+"""A DDS domain, as readers and writers use it."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from linkwright.wire.dds.type_descriptions import WireTypes
 
 @dataclass(frozen=True, slots=True)
 class Domain:
-    """The DDS domain, as the process takes part in it.
+    """The DDS domain, from the perspective of this process.
 
     Attributes:
-        participant: ours.
-        remote: the graph outside.
+        participant: our participant.
+        remote: the remote graph.
         types: descriptions of types.
-        fragment_size: the bytes of a sample up to which it surely goes into one packet.
+        fragment_size: the bytes of a sample up to which it certainly fits into one packet.
         pacer: sends large samples to Fast DDS.
     """
 

@@ -1,7 +1,7 @@
-"""Makes, feeds and deletes the mirrors of this process's endpoints in a domain.
+"""Create, feed and delete the mirrors of this process's endpoints in a domain.
 
-Two threads do the work. One makes and deletes readers and writers in the order in which they were requested, and keeps
-the tables of the graph outside; the other takes samples and hands them on.
+Two threads do the work. One creates and deletes readers and writers in the order in which they were requested, and
+updates the tables of the remote graph. The other takes samples and passes them on.
 """
 
 from __future__ import annotations
@@ -44,13 +44,13 @@ _FIRST_ANNOUNCE_SPAN = 1.0
 
 
 class Engine(AnyEngine):
-    """One participant with its readers and writers.
+    """A participant with its readers and writers.
 
     Args:
         settings: the domain and how to join it.
         remote: the tables to fill.
-        departures: judges how publishers outside left.
-        work: the queue of requests; others append to it and `wake`.
+        departures: judges how remote publishers left.
+        work: the queue of requests; other threads append to it and call `wake`.
         logger: logs problems.
 
     Raises:
@@ -96,16 +96,16 @@ class Engine(AnyEngine):
         self._mismatched: dict[OutgoingTopic | IncomingTopic, float] = {}
 
     def start(self) -> None:
-        """Begin."""
+        """Start the threads."""
         self._control.start()
         self._reception.start()
 
     def wake(self) -> None:
-        """Look at the work soon; from any thread."""
+        """Have the queue of requests processed soon; may be called from any thread."""
         self._control.wake()
 
     def close(self) -> None:
-        """End: reliable samples are acknowledged first, or a second has passed.
+        """Leave the domain once reliable samples are acknowledged, at the latest after a second.
 
         The departure of our nodes is announced, unless the process ends because of an error (`departures`).
         """
@@ -125,13 +125,13 @@ class Engine(AnyEngine):
         self._participant.close()
 
     def abandon(self) -> None:
-        """Send nothing more, without calling Cyclone."""
+        """Stop sending, without calling Cyclone."""
         for topic in self._outgoing.values():
             topic.abandon()
         for client in self._clients.values():
             client.abandon()
 
-    # --- work, in the thread that makes and deletes ------------------------------------------------------------------
+    # --- work, in the thread that creates and deletes ----------------------------------------------------------------
 
     def add_node(self, node: NodeIdentity) -> None:
         """Announce a node."""
@@ -157,7 +157,7 @@ class Engine(AnyEngine):
         self._is_announced = False
 
     def close_publisher(self, publisher: Any) -> None:
-        """Delete a publisher's writer when all readers have acknowledged its samples, or after a second."""
+        """Delete a publisher's writer once all readers have acknowledged its samples, at the latest after a second."""
         topic = self._outgoing.pop(publisher, None)
         if topic is not None:
             self._control.detach(topic.entity)
@@ -190,7 +190,7 @@ class Engine(AnyEngine):
         self._is_announced = False
 
     def open_presence(self, presence: Any) -> None:
-        """Show an endpoint that takes no part."""
+        """Announce an endpoint that neither sends nor receives."""
         self._presences[presence] = open_presence(presence, self._domain)
         self._is_announced = False
 
@@ -214,7 +214,11 @@ class Engine(AnyEngine):
     # --- between the work --------------------------------------------------------------------------------------------
 
     def _idle(self) -> float | None:
-        """Work off requests, and handle what discovery found; seconds after which to look again, or None."""
+        """Process requests, and handle the results of discovery.
+
+        Returns:
+            The seconds until the next call, or None if no call is needed.
+        """
         self._do_some_work()
         self._look_outside()
         self._end_leaving()
@@ -242,14 +246,14 @@ class Engine(AnyEngine):
             self._remote.announce()
 
     def _meet_fast(self, mirrored: IncomingService | OutsideServer) -> None:
-        """Have a new service or client known to the participants of Fast DDS."""
+        """Make a new service or client known to the participants of Fast DDS."""
         if self._fast is None:
             self._look_for_fast()
         else:
             mirrored.meet_fast(self._fast)
 
     def _look_for_fast(self) -> None:
-        """Look for the participants of Fast DDS, from the first on that there is for a service or a client of ours."""
+        """Look for participants of Fast DDS once one exists and this process has a service or a client."""
         fast = self._remote.fast_participants()
         if self._fast is None and self._is_fast_possible and fast and (self._services or self._clients):
             self._is_fast_possible = False
@@ -266,7 +270,7 @@ class Engine(AnyEngine):
             self._fast.expect(fast)
 
     def _fast_address(self, reader: bytes) -> Address | None:
-        """Where a reader of Fast DDS listens on this machine, as far as the participant for services knows it."""
+        """Return the address of a reader of Fast DDS on this machine, if the participant for services knows it."""
         return None if self._fast is None else self._fast.address_of(reader)
 
     def _on_match(self) -> None:
@@ -274,15 +278,15 @@ class Engine(AnyEngine):
         self._control.wake()
 
     def _on_waiting(self, topic: OutgoingTopic) -> None:
-        """Note a topic whose messages wait for acknowledgements; called by any thread."""
+        """Remember a topic whose messages wait for acknowledgements; called by any thread."""
         if topic not in self._waiting:
             self._waiting[topic] = None
             self._control.wake()
 
     def _write_waiting(self) -> None:
-        """Write the samples that waited for acknowledgements that have come."""
+        """Write the samples that were waiting for acknowledgements and can now be written."""
         for topic in tuple(self._waiting):
-            del self._waiting[topic]  # first: acknowledgements that come from now on are noted again
+            del self._waiting[topic]  # removed first, so that acknowledgements that arrive from now on add it again
             if topic.review():
                 self._waiting[topic] = None
 
@@ -291,7 +295,7 @@ class Engine(AnyEngine):
         self._control.wake()
 
     def _log_mismatches(self) -> None:
-        """Report incompatible QoS with the names of the nodes, which are known a moment after the mismatch."""
+        """Report incompatible QoS with the names of the nodes, which are known shortly after the mismatch."""
         for topic, due in tuple(self._mismatched.items()):
             is_due = time.monotonic() >= due
             topic.log_mismatches(finally_=is_due)
@@ -313,7 +317,7 @@ class Engine(AnyEngine):
                 topic.close()
 
     def _announce(self) -> None:
-        """Announce our nodes when something changed; many changes in a row are announced together."""
+        """Announce our nodes if they have changed; several changes in a row are announced together."""
         if not self._is_announced and (not self._work or time.monotonic() - self._announced_at > self._announce_span):
             self._discovery.publish(self._described_nodes())
             self._is_announced = True

@@ -1,4 +1,4 @@
-"""Joins a graph to a DDS domain, if DDS is installed: that is found out without the import, which takes 0.15 s."""
+"""Join a graph to a DDS domain if DDS is installed; this is checked without the import, which takes 0.15 s."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 
 def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
-    """Why this process does not use DDS; empty when it does.
+    """Return the reason why this process does not use DDS; empty if it does.
 
     Args:
-        environment: the environment variables; those of the process when left out.
+        environment: the environment variables; those of this process if omitted.
     """
     if is_switched_off(environment):
         return switched_off()
@@ -40,10 +40,10 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
 
 
 def available(environment: Mapping[str, str] | None = None) -> bool:
-    """Whether DDS can be joined."""
+    """Return whether DDS can be used."""
     return not why_not(environment)
 
 
 def join(graph: Graph, **options: Unpack[JoinOptions]) -> DdsTransport | None:
-    """Have a graph seen by other processes over DDS, and see theirs; None where that cannot be."""
+    """Connect a graph to other processes over DDS; return None if that is not possible."""
     return join_with(graph, "dds", read_settings, DdsTransport, why_not, options)

@@ -1,7 +1,8 @@
-"""How many processes of this machine take part in a domain, as far as the system reports it: by their ports.
+"""Count the processes of this machine that take part in a domain, by the ports that the system reports.
 
-Every DDS implementation listens on the ports that RTPS gives to a domain (DDSI-RTPS 2.3, 9.6.1.1): one that all share
-for multicast, one of its own for unicast, or both. So a process that has not answered yet is seen here already.
+Every DDS implementation listens on the ports that RTPS assigns to a domain (DDSI-RTPS 2.3, 9.6.1.1): one shared port
+for multicast, one separate port for unicast, or both. A process that has not answered yet can therefore be counted
+here.
 """
 
 from __future__ import annotations
@@ -16,22 +17,23 @@ _TABLES = ("udp", "udp6")
 
 
 def multicast_port(domain_id: int) -> int:
-    """The port on which announcements to everybody in a domain arrive (SPDP_WELL_KNOWN_MULTICAST_PORT)."""
+    """Return the port for announcements to all participants of a domain (SPDP_WELL_KNOWN_MULTICAST_PORT)."""
     return _PORT_BASE + _DOMAIN_GAIN * domain_id
 
 
 def other_processes(domain_id: int, tables: Path = Path("/proc/self/net")) -> int | None:
-    """At least how many other processes take part in a domain.
+    """Return a lower bound of the number of other processes that take part in a domain.
 
-    No process listens twice on a port of the domain, so there are as many as listen on its multicast port, or on its
-    unicast ports for announcements (every second one), whichever are more.
+    No process listens twice on a port of the domain. The number is therefore the number of sockets on its multicast
+    port or
+    on its unicast ports for announcements (every second port), whichever is greater.
 
     Args:
         domain_id: the DDS domain.
         tables: the folder with the system's tables of sockets (proc(5)).
 
     Returns:
-        The number, which may be 0; None where the system does not report it.
+        The number, which may be 0; None if the system does not report it.
     """
     first = multicast_port(domain_id)
     listening: Counter[int] = Counter()
@@ -50,14 +52,14 @@ def other_processes(domain_id: int, tables: Path = Path("/proc/self/net")) -> in
 
 
 def waiting_bytes(port: int, tables: Path = Path("/proc/self/net")) -> int | None:
-    """How many bytes wait to be received at a UDP port of this machine, with the system's overhead of each packet.
+    """Return the number of bytes waiting at a UDP port of this machine, including the system's overhead per packet.
 
     Args:
-        port: the port; where several sockets listen on it, the fullest counts.
+        port: the port; if several sockets listen on it, the fullest one counts.
         tables: the folder with the system's tables of sockets (proc(5)).
 
     Returns:
-        The bytes, 0 also where no socket listens; None where the system does not report them.
+        The number of bytes, 0 if no socket listens; None if the system does not report it.
     """
     pattern = b":%04X" % port
     most = 0
@@ -73,13 +75,13 @@ def waiting_bytes(port: int, tables: Path = Path("/proc/self/net")) -> int | Non
 
 
 def _own_sockets() -> set[str]:
-    """The inodes of this process's sockets."""
+    """Return the inodes of this process's sockets."""
     folder = Path("/proc/self/fd")
     found = set()
     for entry in folder.iterdir():
         try:
             target = str(entry.readlink())
-        except OSError:  # closed since
+        except OSError:  # closed in the meantime
             continue
         if target.startswith("socket:["):
             found.add(target[len("socket:[") : -1])

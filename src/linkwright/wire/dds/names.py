@@ -1,4 +1,4 @@
-"""Names and types of ROS 2 in DDS (design article "Topic and service name mapping", rmw)."""
+"""Map names and types of ROS 2 to DDS (design article "Topic and service name mapping", rmw)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ DISCOVERY_TOPIC = "ros_discovery_info"
 
 
 class Role(Enum):
-    """The roles of DDS topics: topics of ROS, requests, responses."""
+    """The roles of DDS topics: ROS topics, requests and responses."""
 
     TOPIC = "rt"
     REQUEST = "rq"
@@ -37,18 +37,18 @@ class RosName:
 
 
 def dds_topic(role: Role, name: str, *, plain: bool = False) -> str:
-    """The DDS topic of an absolute ROS name.
+    """Return the DDS topic for an absolute ROS name.
 
     Args:
         role: the role of the topic.
-        name: such as ``/joint_states``.
-        plain: QoS ``avoid_ros_namespace_conventions``: no prefix.
+        name: the name, such as ``/joint_states``.
+        plain: whether to omit the prefix, as the QoS setting ``avoid_ros_namespace_conventions`` requires.
     """
     return ("" if plain else role.value) + name + _SUFFIXES[role]
 
 
 def ros_name(topic: str) -> RosName | None:
-    """The ROS name of a DDS topic; None when it does not belong to ROS."""
+    """Return the ROS name of a DDS topic; None if it does not belong to ROS."""
     prefix, slash, rest = topic.partition("/")
     role = _ROLES.get(prefix)
     if role is None or not slash:
@@ -60,7 +60,7 @@ def ros_name(topic: str) -> RosName | None:
 
 
 def ros_service_type(type_name: str) -> str | None:
-    """The service type that a request or reply type belongs to; None when it is neither."""
+    """Return the service type that a request or reply type belongs to; None for any other type."""
     name = ros_type(type_name)
     if name is None:
         return None
@@ -71,7 +71,7 @@ def ros_service_type(type_name: str) -> str | None:
 
 
 def parse_user_data(data: bytes) -> dict[str, str]:
-    """The facts in USER_DATA, written ``key=value;key=value;`` (rmw ``parse_key_value``)."""
+    """Parse USER_DATA, which is written ``key=value;key=value;`` (rmw ``parse_key_value``)."""
     facts = {}
     for item in data.decode("utf-8", errors="replace").split(";"):
         key, equals, value = item.partition("=")
@@ -81,6 +81,6 @@ def parse_user_data(data: bytes) -> dict[str, str]:
 
 
 def endpoint_id(guid: bytes) -> str:
-    """How rmw_cyclonedds_cpp writes the id that joins the reader and the writer of a client or a service."""
+    """Format the id that links the reader and the writer of a client or service, as rmw_cyclonedds_cpp does."""
     first, *rest = guid
     return f"{first:2x}" + "".join(f".{byte:x}" for byte in rest)

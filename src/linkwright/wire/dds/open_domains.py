@@ -1,4 +1,4 @@
-"""The DDS domains that this process has open: each once, however many graphs are on it."""
+"""The DDS domains that this process has open; each is opened once, for any number of graphs."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ class OpenDomain:
     """A domain with the entities that its participants share.
 
     Attributes:
-        number: the domain.
-        handle: Cyclone's.
-        users: how many participants are on it.
-        descriptions: of types.
-        types: of topics, as Cyclone has them.
-        members: keeps announcements in the machine; None where they may leave it.
+        number: the domain id.
+        handle: Cyclone's handle.
+        users: the number of participants in it.
+        descriptions: the descriptions of types.
+        types: the types of topics, as Cyclone has them.
+        members: keeps announcements inside the machine; None if they may leave it.
     """
 
     def __init__(self, number: int, handle: int, members: socket | None = None) -> None:
@@ -41,7 +41,7 @@ _lock = Lock()
 
 
 def open_domain(settings: Settings) -> OpenDomain:
-    """A domain for one participant more, opened with the settings unless it is open.
+    """Return a domain for one more participant, and open it with the settings if it is not open.
 
     Raises:
         LinkwrightError: DDS102 or DDS103, Cyclone cannot open it.
@@ -55,7 +55,7 @@ def open_domain(settings: Settings) -> OpenDomain:
 
 
 def close_domain(domain: OpenDomain) -> None:
-    """Note that a participant is gone; with the last one go the domain, its sockets and its threads."""
+    """Remove a participant from a domain; the last one closes the domain with its sockets and threads."""
     with _lock:
         domain.users -= 1
         if not domain.users:
@@ -67,10 +67,10 @@ def close_domain(domain: OpenDomain) -> None:
 
 
 def _create_domain(settings: Settings) -> OpenDomain:
-    """Open the domain with the first configuration that Cyclone accepts; Cyclone prints what it rejects in one.
+    """Open a domain with the first configuration that Cyclone accepts; Cyclone prints what it rejects.
 
     Raises:
-        LinkwrightError: DDS102 or DDS103, it accepts none.
+        LinkwrightError: DDS102 or DDS103, Cyclone accepts none of the configurations.
     """
     configurations, members = settings.configurations, None
     if settings.on_loopback:
@@ -81,7 +81,8 @@ def _create_domain(settings: Settings) -> OpenDomain:
     code = _first_taken(settings.domain_id, configurations)
     if code >= 0:
         if not settings.user_configuration:
-            # Each broken or foreign packet causes a warning, so any process could flood the log.
+            # Only errors are logged: each malformed or foreign packet causes a warning, so any process could flood the
+            # log.
             load().dds_set_log_mask(LOG_ERRORS)
         return OpenDomain(settings.domain_id, code, members)
     if members is not None:

@@ -1,10 +1,11 @@
-"""Large samples for Fast DDS readers on this machine go out packet by packet, as fast as the readers take them.
+"""Send large samples to Fast DDS readers on this machine packet by packet, as fast as the readers receive them.
 
-Cyclone sends all packets of a sample at once. A reader of Fast DDS receives into a buffer of 208 kB, so that most
-packets of an image are lost: a reliable reader asks for them again, which takes milliseconds for every three packets,
-and a best-effort reader drops the image. Here the packets are sent first, under the GUID and the sequence number of
-Cyclone's writer. Then Cyclone writes the sample, and its packets are duplicates to a reader that has them. Discovery,
-acknowledgements and retransmission stay with Cyclone (`docs/decisions/0104-large-messages-packet-by-packet.md`).
+Cyclone sends all packets of a sample at once. A reader of Fast DDS receives into a buffer of 208 kB, so most packets of
+an image are lost. A reliable reader requests them again, which takes milliseconds for every three packets, and a
+best-effort reader drops the image. Therefore the packets are sent from here first, with the GUID and the sequence
+number of Cyclone's writer. Then Cyclone writes the sample, and its packets are duplicates for a reader that already has
+them. Discovery, acknowledgements and retransmission stay with Cyclone
+(`docs/decisions/0104-large-messages-packet-by-packet.md`).
 """
 
 from __future__ import annotations
@@ -42,12 +43,12 @@ _BLIND_PAUSE, _BLIND_PACKETS = 0.0005, 2
 
 
 class Receiver:
-    """The socket of a process that reads, and the room in its buffer.
+    """The receiving socket of another process, and the free space in its buffer.
 
     Args:
-        address: of the socket.
-        waiting: the bytes that wait at a port; None where the system does not report them.
-        pause: waits some seconds.
+        address: the address of the socket.
+        waiting: returns the number of bytes waiting at a port; None if the system does not report it.
+        pause: waits for some seconds.
     """
 
     def __init__(
@@ -63,11 +64,13 @@ class Receiver:
         self._is_stuck = False
 
     def begin(self) -> None:
-        """Begin with a sample. A reader that took nothing of the last one is not waited for again."""
+        """Start a new sample. If the reader received nothing of the previous sample, do not wait for it again."""
         self._room, self._looks = 0, 1 if self._is_stuck else _LOOKS
 
     def takes_one(self) -> bool:
-        """Whether a packet fits; waits until it does, or until the looks for this sample are used up."""
+        """Wait until a packet fits into the buffer; return whether it fits before the checks for this sample are used
+        up.
+        """
         if not self._room:
             self._room = self._next_room()
             self._is_stuck = not self._room
@@ -90,10 +93,10 @@ class Receiver:
 
 
 class Pacer:
-    """Sends the large samples of all writers of a participant, in a thread that starts with the first of them.
+    """Sends the large samples of all writers of a participant, in a thread that starts with the first one.
 
     Args:
-        address_of: where a reader with a GUID listens on this machine; None where that is not known.
+        address_of: returns the address of a reader on this machine from its GUID; None if it is not known.
     """
 
     def __init__(self, address_of: Callable[[bytes], Address | None]) -> None:
@@ -105,12 +108,12 @@ class Pacer:
         self._receivers: dict[Address, Receiver] = {}
 
     def places_of(self, readers: Iterable[bytes]) -> dict[bytes, Address]:
-        """The prefixes of the GUIDs of readers, and where each of these participants listens on this machine."""
+        """Return the addresses of the participants of readers on this machine, by GUID prefix."""
         found = {reader[:PREFIX]: self._address_of(reader) for reader in readers}
         return {prefix: address for prefix, address in found.items() if address is not None}
 
     def add(self, writer: PacedWriter) -> None:
-        """Have a writer's samples sent soon; from any thread."""
+        """Have a writer's samples sent soon; may be called from any thread."""
         with self._lock:
             if self._thread is None:
                 self._thread = threading.Thread(target=self._run, name="linkwright-dds-pace", daemon=True)
@@ -118,7 +121,7 @@ class Pacer:
         self._work.put(writer)
 
     def stop(self, timeout: float) -> None:
-        """End the thread, within the seconds given."""
+        """End the thread, waiting at most the given number of seconds."""
         self._work.put(None)
         if self._thread is not None:
             self._thread.join(timeout)
@@ -126,14 +129,14 @@ class Pacer:
             self._socket.close()
 
     def send(self, writer: bytes, number: int, sample: bytes, written: int, places: dict[bytes, Address]) -> None:
-        """Send a sample in the name of a writer.
+        """Send a sample on behalf of a writer.
 
         Args:
-            writer: its GUID.
+            writer: the writer's GUID.
             number: the sequence number that the writer gives to the sample.
-            sample: serialized, a multiple of four bytes.
+            sample: the serialized sample, whose length is a multiple of four bytes.
             written: when it was published, in ns since the epoch.
-            places: the participants that read; see `places_of`.
+            places: the participants with readers; see `places_of`.
         """
         if self._socket is None:
             self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -147,7 +150,7 @@ class Pacer:
             for prefix, receiver in tuple(readers.items()):
                 if receiver.takes_one():
                     head = message(writer[:PREFIX], stamp, start, to=prefix)
-                    with suppress(OSError):  # Cyclone sends the packets that the system does not take
+                    with suppress(OSError):  # Cyclone sends the packets that the system does not accept here
                         self._socket.sendto(head + part, receiver.address)
                 else:
                     del readers[prefix]
@@ -160,19 +163,20 @@ class Pacer:
 
     def _run(self) -> None:
         while (writer := self._work.get()) is not None:
-            if guarded(writer.send_next) is not False:  # after an error the next sample has its turn
+            if guarded(writer.send_next) is not False:  # after an error, the next sample is sent
                 self._work.put(writer)
 
 
 class PacedWriter:
-    """Writes the samples of one writer in order, the large ones by way of the pacer where Fast DDS reads.
+    """Writes the samples of one writer in order, and sends large ones through the pacer if Fast DDS readers exist.
 
     Args:
-        guid: of the writer.
-        depth: how many samples may wait; newer ones replace the oldest.
-        write: writes a sample as published at a time, in ns since the epoch (None for now); whether that worked. The
-            writer numbers the samples that were written from 1.
-        readers: the GUIDs of the readers of Fast DDS that the writer is connected with.
+        guid: the writer's GUID.
+        depth: the maximum number of waiting samples; newer samples replace the oldest.
+        write: writes a sample as published at a time, in ns since the epoch (None for now); returns whether that
+            worked.
+            The writer numbers the samples that were written from 1.
+        readers: returns the GUIDs of the readers of Fast DDS that the writer is matched with.
         pacer: sends the large samples.
     """
 
@@ -192,10 +196,10 @@ class PacedWriter:
         self._written = 0
         self._is_pacing = False
         self._is_numbered = True
-        self._changed = threading.Condition(threading.RLock())  # a warning of a write that failed may go the same way
+        self._changed = threading.Condition(threading.RLock())  # reentrant, as in `Backlog`
 
     def write(self, sample: bytes) -> None:
-        """Write a sample at once, or after the large ones before it; from any thread."""
+        """Write a sample immediately, or after waiting large samples; may be called from any thread."""
         with self._changed:
             if not self._is_pacing and not self._places(sample):
                 self._write_now(sample)
@@ -207,7 +211,7 @@ class PacedWriter:
         self._pacer.add(self)
 
     def send_next(self) -> bool:
-        """Called in the pacer's thread: send the next sample that waits; whether there are more."""
+        """Send the next waiting sample, in the pacer's thread; return whether there are more."""
         with self._changed:
             if self._waiting:
                 sample, published = self._waiting.popleft()
@@ -219,11 +223,11 @@ class PacedWriter:
         if places:
             self._pacer.send(self._guid, self._written + 1, sample, published, places)
         if not self._write_now(sample, published) and places:
-            self._is_numbered = False  # readers have this number with another sample than the next one
+            self._is_numbered = False  # readers have received this number with a sample other than the next one
         return True
 
     def wait_until_written(self, seconds: float) -> bool:
-        """Wait until nothing waits to be sent, at most some seconds; whether that is so."""
+        """Wait until no sample is waiting to be sent; return whether that happened within some seconds."""
         with self._changed:
             return self._changed.wait_for(lambda: not self._is_pacing, min(seconds, threading.TIMEOUT_MAX))
 
@@ -233,7 +237,8 @@ class PacedWriter:
             self._waiting.clear()
 
     def _places(self, sample: bytes) -> dict[bytes, Address]:
-        """The addresses of the readers that a sample is paced for; none for a sample that fits one packet."""
+        """Return the addresses of the readers that a sample is paced for; empty for a sample that fits in one packet.
+        """
         return self._pacer.places_of(self._readers()) if len(sample) > FRAGMENT and self._is_numbered else {}
 
     def _write_now(self, sample: bytes, published: int | None = None) -> bool:

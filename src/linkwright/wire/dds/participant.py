@@ -1,4 +1,4 @@
-"""The DDS participant of this process, which makes readers and writers."""
+"""The DDS participant of this process, which creates readers and writers."""
 
 from __future__ import annotations
 
@@ -20,15 +20,16 @@ SERVICES_NAME = "linkwright-services"
 
 
 def entity_name() -> str:
-    """The name of a participant of this process: what it is, its process and the process namespace that counts in.
+    """Return the name of a participant of this process: its kind, process id and process namespace.
 
-    Other processes of Linkwright on the same machine see from it that the process is gone before its lease has run out.
+    From the name, other processes of Linkwright on the same machine learn that the process has ended before its lease
+    expires.
     """
     return f"{NAME}/{process_namespace()}/{os.getpid()}"
 
 
 def process_namespace() -> str:
-    """Distinguishes processes with the same id in different containers; empty where that is not known."""
+    """Return an identifier that distinguishes processes with the same id in different containers; empty if unknown."""
     try:
         return Path("/proc/self/ns/pid").readlink().name.strip("pid:[]")
     except OSError:
@@ -36,13 +37,13 @@ def process_namespace() -> str:
 
 
 class Participant:
-    """A participant.
+    """A DDS participant.
 
     Args:
         settings: the domain and the configuration.
 
     Raises:
-        LinkwrightError: DDS102 to DDS104, it could not be made.
+        LinkwrightError: DDS102 to DDS104, it could not be created.
     """
 
     def __init__(self, settings: Settings) -> None:
@@ -60,15 +61,15 @@ class Participant:
 
     @property
     def types(self) -> WireTypes:
-        """Descriptions of types for `create_topic`."""
+        """The type descriptions for `create_topic`."""
         return self._domain.descriptions
 
     def create_topic(self, name: str, described_type: object) -> int:
-        """A topic of a type, announced by its name alone.
+        """Create a topic of a type; only the name of the type is announced.
 
         Args:
             name: its DDS name.
-            described_type: the class that describes it (`WireTypes`).
+            described_type: the class that describes the type (`WireTypes`).
 
         Raises:
             CycloneError: Cyclone refuses it.
@@ -76,20 +77,21 @@ class Participant:
         return self._domain.types.create_topic(self.entity, name, described_type)
 
     def create_reader(self, topic: int, qos: int | None) -> int:
-        """A reader of a topic or of one of Cyclone's own."""
+        """Create a reader for a topic, or for one of Cyclone's builtin topics."""
         return checked(self._dds.dds_create_reader(self.entity, topic, qos, None), "making a reader")
 
     def create_writer(self, topic: int, qos: int) -> int:
-        """A writer of a topic."""
+        """Create a writer for a topic."""
         return checked(self._dds.dds_create_writer(self.entity, topic, qos, None), "making a writer")
 
     def delete(self, *entities: int) -> None:
-        """Delete entities, readers and writers before their topics."""
+        """Delete entities; readers and writers must be given before their topics."""
         for entity in entities:
             self._dds.dds_delete(entity)
 
     def close(self) -> None:
-        """Leave the domain and delete all entities; the last to leave deletes its sockets and threads, too."""
+        """Leave the domain and delete all entities; the last participant also deletes the domain's sockets and threads.
+        """
         self.closed = True
         self._dds.dds_delete(self.entity)
         close_domain(self._domain)

@@ -1,4 +1,5 @@
-"""Endpoints that others see in a domain, and that take no part: readers whose samples are never taken."""
+"""Endpoints that are announced in a domain but neither send nor receive: the samples of their readers are never taken.
+"""
 
 from __future__ import annotations
 
@@ -17,17 +18,20 @@ if TYPE_CHECKING:
 
 
 def open_presence(presence: Presence, domain: Domain) -> QuietReader | QuietClient:
-    """Have an endpoint seen.
+    """Announce an endpoint that neither sends nor receives.
 
     Args:
         presence: the endpoint.
-        domain: where the others are.
+        domain: the domain in which it is announced.
     """
     return (QuietReader if presence.kind is EndpointKind.SUBSCRIPTION else QuietClient)(presence, domain)
 
 
 class QuietReader(MirroredTopic):
-    """A reader that keeps the last sample, which is never taken; writers send it only samples that others here get."""
+    """A reader that keeps the last sample but never takes it.
+
+    Writers send it only samples that other readers in this process receive too.
+    """
 
     _STATUS = 0
     writer_guids: Sequence[bytes] = ()
@@ -54,11 +58,11 @@ class QuietReader(MirroredTopic):
 
 
 class QuietClient:
-    """The two ends of a client that asks nothing.
+    """The reader and the writer of a client that sends no requests.
 
     Args:
         presence: the client.
-        domain: where the others are.
+        domain: the domain in which it is announced.
     """
 
     def __init__(self, presence: Presence, domain: Domain) -> None:
@@ -67,9 +71,9 @@ class QuietClient:
         self.writer_guids = (self._pair.writer_guid,)
 
     def close(self) -> None:
-        """Delete both."""
+        """Delete the reader and the writer."""
         self._pair.close()
 
 
 def _ignore(_: Any) -> None:
-    """Ignore it: the other side with an incompatible quality of service notifies its own users."""
+    """Ignore a mismatch: the other side notifies its own users of the incompatible quality of service."""

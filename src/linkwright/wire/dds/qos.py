@@ -32,13 +32,13 @@ _XCDR1 = 0
 
 @contextmanager
 def endpoint_qos(profile: QoSProfile, user_data: bytes = b"") -> Iterator[int]:
-    """The policies of a reader or writer, for as long as the block runs.
+    """Yield the policies of a reader or writer, which are valid inside the block.
 
-    Samples of this participant do not come back to it: the bus of the process has delivered them.
+    Samples of this participant are not returned to it, because the bus of the process has already delivered them.
 
     Args:
         profile: the QoS that is offered or requested; Cyclone chooses open values as for ROS.
-        user_data: facts for rmw.
+        user_data: key-value data for rmw.
     """
     dds = load()
     qos: int = dds.dds_create_qos()
@@ -75,7 +75,7 @@ def endpoint_qos(profile: QoSProfile, user_data: bytes = b"") -> Iterator[int]:
 
 @contextmanager
 def participant_qos(user_data: bytes, entity_name: str) -> Iterator[int]:
-    """The policies of a participant, for as long as the block runs."""
+    """Yield the policies of a participant, which are valid inside the block."""
     dds = load()
     qos: int = dds.dds_create_qos()
     try:
@@ -87,11 +87,12 @@ def participant_qos(user_data: bytes, entity_name: str) -> Iterator[int]:
 
 
 def profile_of(qos: int, *, announces_history: bool = True) -> QoSProfile:
-    """The ROS profile of a remote endpoint's policies.
+    """Return the ROS profile for a remote endpoint's policies.
 
     Args:
         qos: the policies.
-        announces_history: whether the endpoint announces its history; Cyclone has only a default for one that does not.
+        announces_history: whether the endpoint announces its history; if it does not, Cyclone only has a default for
+            it.
     """
     dds = load()
     kind, depth, duration = c.c_int(), c.c_int32(), c.c_int64()

@@ -40,15 +40,15 @@ _ALL_WITHIN = 3.0
 
 @dataclass(slots=True)
 class RemoteParticipant:
-    """A process, or a part of one, that takes part in the domain.
+    """A participant in the domain: another process, or a part of one.
 
     Attributes:
         guid: 16 bytes.
-        enclave: from its USER_DATA.
+        enclave: the security enclave from its USER_DATA.
         entity_name: its own name.
-        peer_process: of one that is not ours, the id of its process, where that is one of this machine.
-        host: the machine that it runs on; empty where it does not announce it.
-        entities: its announcement in ``ros_discovery_info``; None as long as there is none.
+        peer_process: for a participant that is not ours, the id of its process if it runs on this machine.
+        host: the machine that it runs on; empty if it is not announced.
+        entities: its announcement in ``ros_discovery_info``; None until it arrives.
     """
 
     guid: bytes
@@ -61,17 +61,17 @@ class RemoteParticipant:
     """When it was first heard of, by the steady clock."""
 
     def endpoints(self) -> set[bytes]:
-        """The GUIDs of the endpoints that it announces for its nodes."""
+        """Return the GUIDs of the endpoints that it announces for its nodes."""
         return {gid for node in (self.entities.nodes if self.entities else ()) for gid in _gids(node)}
 
     @property
     def is_ours(self) -> bool:
-        """Whether it is one of Linkwright's, which gives no evidence of the distribution of ROS 2."""
+        """Whether it belongs to Linkwright, and so does not indicate the distribution of ROS 2."""
         return self.entity_name.startswith(NAME + "/")
 
     @property
     def process(self) -> int | None:
-        """The id of its process; None unless that is known to be one of this machine."""
+        """The id of its process; None unless it is known to run on this machine."""
         if not self.is_ours:
             return self.peer_process
         _, _, rest = self.entity_name.partition("/")
@@ -81,7 +81,7 @@ class RemoteParticipant:
         return int(process)
 
     def has_died(self) -> bool:
-        """Whether its process is gone though its lease still runs; known on this machine alone."""
+        """Return whether its process has ended before its lease expired; known only on this machine."""
         return self.process is not None and not runs(self.process)
 
 
@@ -91,13 +91,13 @@ class RemoteEndpoint:
 
     Attributes:
         guid: 16 bytes.
-        handle: its handle at Cyclone in this process.
+        handle: Cyclone's handle of it in this process.
         participant: the GUID of its participant.
-        is_writer: whether it writes.
+        is_writer: whether it is a writer.
         topic: its DDS topic.
         type_name: its DDS type.
         qos: its policies.
-        facts: from its USER_DATA.
+        facts: the entries of its USER_DATA.
     """
 
     guid: bytes
@@ -120,10 +120,11 @@ class RemoteEndpoint:
         return is_fast(self.guid)
 
     def described(self, node: NodeIdentity | None, host: str = "") -> EndpointInfo | None:
-        """In ROS's terms; None for endpoints outside of ROS, and for the second half of services and clients.
+        """Return its description in ROS terms; None for an endpoint outside ROS or the second half of a service or
+        client.
 
         Args:
-            node: whose it is, where that is known.
+            node: the node that it belongs to, if known.
             host: the machine that it is on.
         """
         name = self.name
@@ -139,24 +140,30 @@ class RemoteEndpoint:
             return None
         if type_name is None:
             return None
-        # rmw_fastrtps announces the hash of the request or the response, the others that of the service.
+        # rmw_fastrtps announces the hash of the request or the response; other implementations announce the service's
+        # hash.
         announces_hash = name.role is Role.TOPIC or not self.is_fast
         type_hash = self.facts.get("typehash", "") if announces_hash else ""
         return EndpointInfo(kind, node, name.name, type_name, self.qos, self.guid, type_hash, host=host)
 
 
 class DepartureWatch(Protocol):
-    """Is notified of endpoints that disappear; see `linkwright.wire.dds.departures.Departures`."""
+    """Receives notice of endpoints that disappear; see `linkwright.wire.dds.departures.Departures`."""
 
     def endpoint_left(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
-        """Note that an endpoint disappeared; `node` still announces it, or is None where it was withdrawn."""
+        """Handle the disappearance of an endpoint.
+
+        Args:
+            endpoint: the endpoint.
+            node: the node that still announces it; None if it was withdrawn.
+        """
 
     def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
-        """Note the endpoints that the nodes of a participant announce now."""
+        """Handle an announcement of the endpoints that a participant's nodes have now."""
 
 
 class RemoteGraph(Outside):
-    """The nodes and endpoints of other processes; `Outside` names the threads that write and read it."""
+    """The nodes and endpoints of other processes; see `Outside` for the threads that write and read them."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -204,7 +211,7 @@ class RemoteGraph(Outside):
                 self._forget(endpoint)
 
     def entities_announced(self, entities: ParticipantEntities) -> None:
-        """Record which nodes a participant announces; that may come before the participant itself is known."""
+        """Record the nodes that a participant announces; this may happen before the participant is known."""
         with self._lock:
             participant = self._participants.get(entities.participant)
             if participant is None:
@@ -220,14 +227,14 @@ class RemoteGraph(Outside):
         self._endpoints.pop(endpoint.guid, None)
         self._by_handle.pop(endpoint.handle, None)
 
-    # --- asked by the transport ----------------------------------------------------------------------------------
+    # --- queries of the transport -------------------------------------------------------------------------------
 
     def endpoint(self, handle: int) -> RemoteEndpoint | None:
-        """A reader or writer by its handle."""
+        """Return the reader or writer with a handle."""
         return self._by_handle.get(handle)
 
     def endpoints_of(self, topic: str, *, writers: bool) -> list[RemoteEndpoint]:
-        """The writers or the readers of a DDS topic."""
+        """Return the writers or the readers of a DDS topic."""
         with self._lock:
             return [
                 endpoint
@@ -236,28 +243,28 @@ class RemoteGraph(Outside):
             ]
 
     def participants(self) -> list[RemoteParticipant]:
-        """All participants."""
+        """Return all participants."""
         with self._lock:
             return list(self._participants.values())
 
     def fast_participants(self) -> set[bytes]:
-        """The prefixes of the GUIDs of the participants of Fast DDS that are not known to have been killed."""
+        """Return the GUID prefixes of the Fast DDS participants that are not known to have been killed."""
         dead = self._dead_participants()
         with self._lock:
             return {guid[:_PREFIX] for guid in self._participants if is_fast(guid) and guid not in dead}
 
     def is_read_by_fast(self, topic: str) -> bool:
-        """Whether a participant of Fast DDS that is not known to have been killed reads a DDS topic."""
+        """Return whether a Fast DDS participant that is not known to have been killed reads a DDS topic."""
         dead = self._dead_participants()
         readers = self.endpoints_of(topic, writers=False)
         return any(reader.is_fast and reader.participant not in dead for reader in readers)
 
     def is_dead(self, prefix: bytes) -> bool:
-        """Whether a participant, named by the prefix of its GUIDs, is known to have been killed."""
+        """Return whether a participant, given by its GUID prefix, is known to have been killed."""
         return any(guid.startswith(prefix) for guid in self._dead_participants())
 
     def all_announced(self) -> bool:
-        """Whether each participant with a writer of ``ros_discovery_info`` has announced its nodes."""
+        """Return whether each participant with a writer of ``ros_discovery_info`` has announced its nodes."""
         with self._lock:
             speakers = {
                 endpoint.participant
@@ -271,10 +278,11 @@ class RemoteGraph(Outside):
             )
 
     def is_complete(self) -> bool:
-        """Whether all have announced their nodes, and those nodes' endpoints are known.
+        """Return whether all participants have announced their nodes, and the endpoints of those nodes are known.
 
-        A participant that listens to announcements belongs to ROS and makes one, too. A participant without known
-        endpoints is waited for a moment.
+        A participant that listens to announcements belongs to ROS and will announce its own nodes. A participant
+        without known
+        endpoints is given a moment.
         """
         now = time.monotonic()
         with self._lock:
@@ -294,14 +302,14 @@ class RemoteGraph(Outside):
         return self.all_announced()
 
     def our_processes(self) -> set[int]:
-        """The ids of Linkwright's processes on this machine, as far as they are known and alive."""
+        """Return the known process ids of running Linkwright processes on this machine."""
         ours = [
             participant for participant in self.participants() if participant.is_ours and not participant.has_died()
         ]
         return {our.process for our in ours if our.process is not None}
 
     def nodes(self) -> list[NodeIdentity]:
-        """The nodes of other processes, one entry for each, in the order of their participants."""
+        """Return the nodes of other processes, one entry for each, in the order of their participants."""
         dead = self._dead_participants()
         with self._lock:
             return [
@@ -312,7 +320,7 @@ class RemoteGraph(Outside):
             ]
 
     def endpoints(self) -> list[EndpointInfo]:
-        """The topics' and services' endpoints of other processes, in ROS's terms."""
+        """Return the topic and service endpoints of other processes, in ROS terms."""
         dead = self._dead_participants()
         with self._lock:
             owners = self._owners()
@@ -328,7 +336,7 @@ class RemoteGraph(Outside):
         return participant.host if participant else ""
 
     def node_name(self, endpoint: RemoteEndpoint) -> str:
-        """The full name of the node that an endpoint belongs to; empty as long as it is not announced."""
+        """Return the full name of the node that an endpoint belongs to; empty until it is announced."""
         with self._lock:
             owner = self._owner_of(endpoint)
         return owner.full_name if owner else ""
@@ -343,7 +351,7 @@ class RemoteGraph(Outside):
         return None
 
     def writers_of(self, participant: bytes) -> list[tuple[RemoteEndpoint, NodeIdentity | None]]:
-        """The writers of a participant, and the node of each where it is announced."""
+        """Return the writers of a participant, each with its node or, until that is announced, None."""
         with self._lock:
             writers = [
                 endpoint
@@ -362,7 +370,7 @@ class RemoteGraph(Outside):
         }
 
     def _dead_participants(self) -> frozenset[bytes]:
-        """Participants whose process was killed; looked up again after a moment."""
+        """Return the participants whose process was killed; the result is cached for a moment."""
         now = time.monotonic()
         looked_at, dead = self._dead
         if now - looked_at > 0.25:
@@ -372,7 +380,7 @@ class RemoteGraph(Outside):
 
 
 def runs(process: int) -> bool:
-    """Whether there is a process of an id on this machine that has not ended."""
+    """Return whether a process with the given id is running on this machine."""
     try:
         os.kill(process, 0)
     except ProcessLookupError:
@@ -383,7 +391,7 @@ def runs(process: int) -> bool:
 
 
 def _is_zombie(process: int) -> bool:
-    """Whether a process has ended, and its parent has not asked how; that is known on Linux."""
+    """Return whether a process has ended but has not been waited for by its parent; known only on Linux."""
     try:
         stat = Path(f"/proc/{process}/stat").read_bytes()
     except OSError:
@@ -392,7 +400,7 @@ def _is_zombie(process: int) -> bool:
 
 
 def is_fast(guid: bytes) -> bool:
-    """Whether an entity belongs to a participant of Fast DDS (RTPS vendor 1.15)."""
+    """Return whether an entity belongs to a participant of Fast DDS (RTPS vendor 1.15)."""
     return guid.startswith(_FAST_DDS)
 
 

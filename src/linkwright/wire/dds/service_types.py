@@ -1,4 +1,4 @@
-"""The types and the USER_DATA of services over DDS, in Cyclone's way and in that of Fast DDS."""
+"""The types and the USER_DATA of services over DDS, in the forms of Cyclone and of Fast DDS."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from linkwright.wire.dds.names import endpoint_id
 
 
 def service_facts(identity: bytes, endpoint: Endpoint, *, is_server: bool) -> bytes:
-    """The USER_DATA of both endpoints of a client or a server, which names them as belonging together.
+    """Return the USER_DATA for both endpoints of a client or server, which marks them as belonging together.
 
     Args:
-        identity: 16 bytes of their own.
+        identity: 16 bytes that are unique to them.
         endpoint: the client or the service.
-        is_server: which of the two.
+        is_server: whether it is a service.
     """
     key = "serviceid" if is_server else "clientid"
     hash_text = _hash_of(endpoint)
@@ -21,12 +21,12 @@ def service_facts(identity: bytes, endpoint: Endpoint, *, is_server: bool) -> by
 
 
 def halves(service_type: str) -> tuple[str, str]:
-    """The ROS types of the requests and the responses of a service, such as ``std_srvs/srv/SetBool``."""
+    """Return the ROS types of the requests and the responses of a service, such as ``std_srvs/srv/SetBool``."""
     return f"{service_type}_Request", f"{service_type}_Response"
 
 
 def _hash_of(endpoint: Endpoint) -> str:
-    """The announced hash of a service's type, or the type's own; empty where bytes of an unknown one are carried."""
+    """Return the announced hash of a service's type, or the type's own hash; empty for an unknown type."""
     if endpoint.type_hash:
         return endpoint.type_hash
     try:

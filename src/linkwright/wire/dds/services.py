@@ -1,11 +1,12 @@
 """Services and clients over DDS.
 
-A service is two topics. rmw_cyclonedds_cpp writes a header before each request: the id of the client (64 bits) and the
-sequence number of the request. The server writes the same before its reply; all replies reach all clients of a service,
-and each picks its own. The USER_DATA of both endpoints of a client or a server name them as belonging together.
+A service consists of two topics. rmw_cyclonedds_cpp writes a header before each request: the id of the client (64 bits)
+and the sequence number of the request. The server writes the same header before its reply. All replies reach all
+clients of a service, and each client picks its own. The USER_DATA of both endpoints of a client or a server marks them
+as belonging together.
 
-rmw_fastrtps_cpp has the same beside the samples (inline QoS), which Cyclone neither hands on nor writes: services that
-are called from there, and clients that call from here, have a second reader and writer for that
+rmw_fastrtps_cpp sends the same data outside the samples (inline QoS), which Cyclone neither passes on nor writes.
+Services that are called from there, and clients that call servers there, have a second reader and writer for that
 (`linkwright.wire.dds.fast_services`).
 """
 
@@ -55,12 +56,12 @@ _REPLY_WAITS = 1.0
 
 
 class Pair:
-    """The reader and the writer that a client or a service consists of.
+    """The reader and the writer that make up a client or a service.
 
     Args:
         endpoint: the client or service.
-        domain: where the others are.
-        is_server: which of the two.
+        domain: the domain to create them in.
+        is_server: whether the endpoint is a service.
     """
 
     def __init__(self, endpoint: Endpoint, domain: Domain, *, is_server: bool) -> None:
@@ -70,7 +71,7 @@ class Pair:
         self.request_topic = dds_topic(Role.REQUEST, endpoint.name)
         self.reply_topic = dds_topic(Role.REPLY, endpoint.name)
         facts = service_facts(os.urandom(16), endpoint, is_server=is_server)
-        # By their names alone: requests of Fast DDS come without the header.
+        # Described by name only, because requests of Fast DDS arrive without the header.
         described = (domain.types.by_name(half) for half in halves(endpoint.type_name))
         request = participant.create_topic(self.request_topic, next(described))
         reply = participant.create_topic(self.reply_topic, next(described))
@@ -81,19 +82,19 @@ class Pair:
         self.reader_guid = self._dds.guid(self.reader)
         self.writer_guid = self._dds.guid(self.writer)
         endpoint.gid = self.reader_guid if is_server else self.writer_guid
-        # Cyclone wakes a thread until a status is taken. A server takes none: it asks for matches when it replies.
+        # Cyclone wakes a thread until a status is taken. A server takes none: it queries the matches when it replies.
         self._dds.dds_set_status_mask(self.reader, DATA_AVAILABLE | (0 if is_server else SUBSCRIPTION_MATCHED))
         self._dds.dds_set_status_mask(self.writer, 0 if is_server else PUBLICATION_MATCHED)
 
     def has_matched(self, entity: int) -> bool:
-        """Whether the reader or writer has gained or lost a match since the last call."""
+        """Return whether the reader or writer has gained or lost a match since the last call."""
         mask = SUBSCRIPTION_MATCHED if entity == self.reader else PUBLICATION_MATCHED
         status = c.c_uint32()
         self._dds.dds_take_status(entity, c.byref(status), mask)
         return bool(status.value)
 
     def samples(self) -> Iterator[tuple[bytes, Any]]:
-        """The samples that have come, as CDR, and Cyclone's information on each."""
+        """Take the samples that have arrived, as CDR, each with Cyclone's sample info."""
         taken = self._dds.take_bytes(self.reader, ANY_STATE, _AT_ONCE)
         return (sample for sample in (taken if isinstance(taken, list) else ()) if sample[1].valid_data)
 
@@ -102,17 +103,17 @@ class Pair:
         write(self.writer, _LITTLE_ENDIAN + HEADER.pack(client_id, number) + written(message)[_ENCAPSULATION:])
 
     def close(self) -> None:
-        """Delete both."""
+        """Delete the reader and the writer."""
         self._participant.delete(self.reader, self.writer, *self._topics)
 
 
 class OutsideServer:
-    """The servers of other processes, as a client of this one calls them (`graph.endpoints.client.OutsideService`).
+    """The servers of other processes, as a client of this process calls them (`graph.endpoints.client.OutsideService`).
 
     Args:
         client: the client.
-        domain: where the others are.
-        matched: called when an endpoint connected or left, in the thread that receives.
+        domain: the domain with the servers.
+        matched: called when an endpoint is matched or has left, in the receiving thread.
     """
 
     def __init__(self, client: Client[Any, Any], domain: Domain, matched: Callable[[], None]) -> None:
@@ -132,7 +133,7 @@ class OutsideServer:
         self._fast = FastClient(self._client, participant, self._remote.is_dead)
 
     def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
-        """Write a request; returns a function that gives it up."""
+        """Write a request; return a function that cancels it."""
         if self._fast is not None and not self._by_cyclone:
             return self._fast.send(request, answer)
         self._answers[number] = answer
@@ -140,7 +141,7 @@ class OutsideServer:
         return partial(self._forget, number)
 
     def on_data(self) -> bool:
-        """Hand on the replies that are for this client; whether there are more."""
+        """Pass on the replies for this client; return whether there are more samples."""
         if self.pair.has_matched(self.pair.reader):
             self._matched()
         count = 0
@@ -153,13 +154,13 @@ class OutsideServer:
         return count == _AT_ONCE
 
     def on_writer_status(self) -> bool:
-        """Note that a reader connected with the writer or left it."""
+        """Handle a reader that was matched with the writer or left it."""
         if self.pair.has_matched(self.pair.writer):
             self._matched()
         return False
 
     def review(self) -> None:
-        """Find out whether a server is there whose reader and writer both are connected with ours."""
+        """Update whether there is a server whose reader and writer are both matched with ours."""
         self._by_cyclone = self._server_is_there()
         is_ready = self._by_cyclone or (self._fast is not None and self._fast.is_ready())
         if is_ready != self._is_ready:
@@ -167,7 +168,7 @@ class OutsideServer:
             self._client.set_outside(self if is_ready else None)
 
     def close(self) -> None:
-        """Leave; requests without a reply stay so."""
+        """Delete the endpoints; pending requests stay unanswered."""
         self._client.set_outside(None)
         self._answers.clear()
         if self._fast is not None:
@@ -175,7 +176,7 @@ class OutsideServer:
         self.pair.close()
 
     def abandon(self) -> None:
-        """Send no more requests, without calling Cyclone."""
+        """Stop sending requests, without calling Cyclone."""
         self._client.outside = None
 
     def _forget(self, number: int) -> None:
@@ -193,7 +194,7 @@ class IncomingService:
 
     Args:
         service: the service.
-        domain: where the others are.
+        domain: the domain with the clients.
         waits: called when a reply has to wait for its client.
     """
 
@@ -209,7 +210,7 @@ class IncomingService:
         self._lock = Lock()
 
     def on_data(self) -> bool:
-        """Have the requests answered that have come; whether there are more."""
+        """Pass the requests that have arrived to the service; return whether there are more."""
         count = 0
         for data, info in self.pair.samples():
             count += 1
@@ -224,14 +225,14 @@ class IncomingService:
         return count == _AT_ONCE
 
     def meet_fast(self, participant: RtpsParticipant) -> None:
-        """Answer clients on Fast DDS too."""
+        """Start answering clients on Fast DDS too."""
         self._fast = FastServer(self._service, participant)
         early, self._early = self._early, []
         for request in early:
             self._fast.on_early_request(request)
 
     def review(self) -> None:
-        """Write the replies whose client can be reached by now, or could not for too long."""
+        """Write the replies whose client can be reached by now, or has been unreachable for too long."""
         with self._lock:
             for _ in range(len(self._late)):
                 due, sender, client_id, number, response = self._late.popleft()
@@ -248,13 +249,13 @@ class IncomingService:
         return bool(self._late) or (self._fast is not None and self._fast.has_more_to_do)
 
     def close(self) -> None:
-        """Answer other processes no more."""
+        """Stop answering other processes."""
         if self._fast is not None:
             self._fast.close()
         self.pair.close()
 
     def _from_fast(self, sender: RemoteEndpoint | None, data: bytes, info: Any) -> bool:
-        """Whether a request came from Fast DDS, whose clients are answered by `FastServer`."""
+        """Return whether a request came from Fast DDS; if so, pass it to `FastServer`, which answers such clients."""
         guid = sender.guid if sender else self._dds.writer_guid(self.pair.reader, info.publication_handle)
         if not is_fast(guid):
             return False
@@ -276,13 +277,14 @@ class IncomingService:
                 self._waits()
 
     def _can_reach(self, sender: RemoteEndpoint | None) -> bool:
-        """Whether the client's reader is connected with our writer: before that it would miss the reply."""
+        """Return whether the client's reader is matched with our writer; before that, it would miss the reply."""
         readers = (self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True))
         return any(_belong_together(sender, reader, "clientid") for reader in readers)
 
 
 def _belong_together(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: str) -> bool:
-    """Whether two endpoints are those of one client or server: by its id where it has one, else by the participant."""
+    """Return whether two endpoints belong to the same client or server, by its id or, without one, by the participant.
+    """
     if a is None or b is None:
         return False
     if key in a.facts or key in b.facts:
@@ -291,7 +293,9 @@ def _belong_together(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: st
 
 
 def _divided(data: bytes) -> tuple[int, int, bytes]:
-    """The client's id, the sequence number, and the body as CDR; the body is empty where there is no header."""
+    """Split a sample into the client's id, the sequence number and the body as CDR; without a header, the body is
+    empty.
+    """
     if len(data) < _BODY:
         return 0, 0, b""
     client_id, number = HEADER.unpack_from(data, _ENCAPSULATION)

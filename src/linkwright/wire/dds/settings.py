@@ -1,7 +1,7 @@
 """The settings of DDS from the environment: the domain, the range of discovery, and Cyclone's configuration.
 
-Left to itself a process stays inside its machine; `docs/decisions/0011-dds.md` explains the parts of the configuration.
-As soon as ROS's own variables set the range, they are followed as rmw_cyclonedds_cpp follows them.
+By default, a process communicates only inside its machine; `docs/decisions/0011-dds.md` explains the parts of the
+configuration. If ROS's own variables set the range, they are applied as in rmw_cyclonedds_cpp.
 """
 
 from __future__ import annotations
@@ -39,15 +39,16 @@ _STATIC_PEERS_SEPARATOR = ";"
 
 
 def most_participants(domain_id: int) -> int:
-    """How many processes on one machine a domain has room for: each takes two ports, and the highest domains have few.
+    """Return the maximum number of processes of a domain on one machine.
 
-    The ports are those of RTPS (DDSI-RTPS 2.5, 9.6.1).
+    Each process takes two ports, and the highest domains have few left. The ports are those of RTPS (DDSI-RTPS 2.5,
+    9.6.1).
     """
     return min(_PARTICIPANTS, (_LAST_PORT - _FIRST_UNICAST_PORT - _PORTS_OF_A_DOMAIN * domain_id) // 2)
 
 
 class Range(Enum):
-    """How far participants are looked for (ROS_AUTOMATIC_DISCOVERY_RANGE)."""
+    """The range in which participants are looked for (ROS_AUTOMATIC_DISCOVERY_RANGE)."""
 
     MACHINE = "machine"
     """Our own default: this machine, on all its ways."""
@@ -64,16 +65,16 @@ class Settings:
 
     Attributes:
         domain_id: the DDS domain.
-        range: how far others are looked for.
+        range: the range in which others are looked for.
         configurations: fragments for Cyclone; the first one that it accepts is used.
-        gid_size: the gid's bytes in ``ros_discovery_info`` as long as no ROS 2 node was heard.
+        gid_size: the size in bytes of a gid in ``ros_discovery_info`` until a ROS 2 node is discovered.
         warnings: warnings for the user.
         user_configuration: the value of CYCLONEDDS_URI.
-        own_configurations: the fragments without that.
-        peers: other machines to be asked without multicast.
+        own_configurations: the fragments without the user's configuration.
+        peers: other machines to contact without multicast.
         enclave: the security enclave of the nodes.
-        fragment_size: the bytes of a sample up to which it surely goes into one packet.
-        on_loopback: the configurations that use loopback alone; empty where discovery may leave the machine.
+        fragment_size: the bytes of a sample up to which it certainly fits into one packet.
+        on_loopback: the configurations that use loopback only; empty if discovery may leave the machine.
     """
 
     domain_id: int
@@ -90,14 +91,14 @@ class Settings:
 
 
 def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: int | None = None) -> Settings:
-    """The settings of an environment.
+    """Read the settings from environment variables.
 
     Args:
-        environment: the variables; those of the process when left out.
-        domain_id: takes the place of ROS_DOMAIN_ID.
+        environment: the variables; those of this process if omitted.
+        domain_id: takes precedence over ROS_DOMAIN_ID.
 
     Raises:
-        LinkwrightError: DDS101, the domain is not one.
+        LinkwrightError: DDS101, the domain is not valid.
     """
     variables = os.environ if environment is None else environment
     warnings: list[str] = []
@@ -124,7 +125,7 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
 
 
 def _range(variables: Mapping[str, str], warnings: list[str]) -> Range:
-    """How far to look: ROS_LOCALHOST_ONLY takes precedence over ROS_AUTOMATIC_DISCOVERY_RANGE, as in rcl."""
+    """Return the discovery range: ROS_LOCALHOST_ONLY takes precedence over ROS_AUTOMATIC_DISCOVERY_RANGE, as in rcl."""
     localhost_only = variables.get("ROS_LOCALHOST_ONLY", "")
     if localhost_only == "1":
         return Range.LOCALHOST
@@ -178,9 +179,11 @@ _OTHERS = '<NetworkInterface autodetermine="true"/>'
 
 
 def _machine(interfaces: str, addresses: list[str], most: int, *, multicast: bool) -> str:
-    """Discovery on this machine: by unicast to each index at its own addresses, by multicast that never leaves (TTL 0).
+    """Return a configuration for discovery on this machine.
 
-    Multicast is listened to on loopback alone, so that no announcement of another machine is heard.
+    It uses unicast to each participant index at the machine's own addresses, and multicast that never leaves the
+    machine
+    (TTL 0). Multicast is received on loopback only, so that announcements of other machines are ignored.
     """
     peers = "".join(f'<Peer address="{address}"/>' for address in ("127.0.0.1", *addresses))
     by_multicast = (
@@ -199,12 +202,12 @@ def _machine(interfaces: str, addresses: list[str], most: int, *, multicast: boo
 
 
 def _stays_here(reach: Range, peers: list[str]) -> bool:
-    """Whether only processes of this machine are looked for."""
+    """Return whether only processes of this machine are looked for."""
     return reach is Range.MACHINE or (reach is Range.LOCALHOST and not peers)
 
 
 def _fragments(reach: Range, peers: list[str], most: int) -> list[str]:
-    """Configurations in the order of preference, without the user's own."""
+    """Return configurations in order of preference, without the user's own."""
     if _stays_here(reach, peers):
         addresses = own_addresses()[:_OWN_ADDRESSES]
         loopback_alone = [
@@ -222,7 +225,7 @@ def _fragments(reach: Range, peers: list[str], most: int) -> list[str]:
             f"<Tag>ros_discovery_off_{os.getpid()}</Tag></Discovery></Domain></CycloneDDS>"
         )
         return [off]
-    from xml.sax.saxutils import quoteattr  # it imports the modules of urllib, which the usual case does not need
+    from xml.sax.saxutils import quoteattr  # imports modules of urllib, which are not usually needed
 
     local = reach is Range.LOCALHOST
     listed = _THIS_MACHINE + "".join(f"<Peer address={quoteattr(peer)} PruneDelay='inf'/>" for peer in peers)
@@ -238,10 +241,10 @@ _REQUEST = "256s"
 
 
 def own_addresses() -> list[str]:
-    """The IPv4 addresses of the interfaces beside loopback, in the system's order.
+    """Return the IPv4 addresses of the interfaces other than loopback, in the system's order.
 
-    Cyclone prints an error when it is given an interface that does not exist, and a process that is set to stay on
-    the machine may be reachable at the address of its interface alone.
+    Cyclone prints an error if it is given an interface that does not exist, and a process that is set to stay on the
+    machine may be reachable only at the address of its interface.
     """
     addresses = _by_interface() if sys.platform.startswith("linux") else _by_name()
     return [address for address in dict.fromkeys(addresses) if address and not address.startswith("127.")]
@@ -253,7 +256,7 @@ def _by_interface() -> list[str]:
 
 
 def _address(asking: socket.socket, name: str) -> str:
-    """The address of an interface; empty when it has none."""
+    """Return the address of an interface; empty if it has none."""
     from fcntl import ioctl
 
     try:

@@ -1,18 +1,20 @@
-"""The types of a domain's topics, as Cyclone has them: each made once, kept as long as the domain, known by its name.
+"""The Cyclone types of a domain's topics; each is created once and kept until the domain is closed.
 
-Two properties of Cyclone's Python package prevent the use of its types as they are.
+Two properties of Cyclone's Python package prevent using its types directly.
 
-It cannot make a topic without a description of the type, and the description is sent with each endpoint. That does
-harm: Cyclone compares descriptions where both sides have one, and cannot read those that Fast DDS 3 sends of types with
-sequences, so that not even ``ros_discovery_info`` would be shared with a node on rmw_fastrtps_cpp. rmw_cyclonedds_cpp
-up to Jazzy sends none. A type is a structure of C whose first member points to a table of functions
-(``ddsi_sertype_ops``); here it gets a table of ours, in which the functions that describe the type are left out.
+First, the package cannot create a topic without a description of the type, and the description is sent with each
+endpoint. That is harmful: Cyclone compares descriptions if both sides have one, and cannot read those that Fast DDS 3
+sends for types with sequences, so that not even ``ros_discovery_info`` would be shared with a node on rmw_fastrtps_cpp.
+rmw_cyclonedds_cpp up to Jazzy sends none. A type is a C structure whose first member points to a table of functions
+(``ddsi_sertype_ops``). Here the type gets a table of ours without the functions that describe the type.
 
-And Cyclone's table of instances keeps the key of a sample beyond its topic. The package's keys point to their type, to
-see whether it has key members at all, but do not count as its users. ROS's types have no keys, so all of them share one
-entry, that of the topic that was written first. If that type were freed with its last topic, each further sample of any
-topic would be compared through a dangling pointer: entries are then not found again and pile up, or the wrong one is
-freed, which ends in a segmentation fault. So no type is freed before its domain is closed.
+Second, Cyclone's table of instances keeps the key of a sample beyond the lifetime of its topic. The package's keys
+point
+to their type to see whether it has key members at all, but they are not counted as references to it. ROS types have no
+keys, so all of them share one entry, the entry of the topic that was written first. If that type were freed with its
+last topic, each further sample of any topic would be compared through a dangling pointer. Entries would then not be
+found again and accumulate, or the wrong one would be freed, which ends in a segmentation fault. Therefore no type is
+freed before its domain is closed.
 """
 
 from __future__ import annotations
@@ -45,18 +47,18 @@ class TopicTypes:
         self._lock = Lock()
 
     def create_topic(self, participant: int, name: str, described_type: Any) -> int:
-        """A topic.
+        """Create a topic.
 
         Args:
-            participant: Cyclone's handle.
+            participant: Cyclone's handle of the participant.
             name: its DDS name.
-            described_type: the class that describes its type to Cyclone here (`WireTypes`).
+            described_type: the class that describes its type to Cyclone (`WireTypes`).
 
         Raises:
             CycloneError: Cyclone refuses it.
         """
         what = f"topic '{name}'"
-        with self._lock:  # only this thread has a type that is being made
+        with self._lock:  # no other thread sees a type that is being created
             address = self._made.get(described_type)
             if address is None:
                 address = self._made[described_type] = self._new(participant, described_type, what)
@@ -67,15 +69,17 @@ class TopicTypes:
         return checked(code, what)
 
     def free(self) -> None:
-        """Free the types of a domain that was closed, when nothing of Cyclone's looks at them any more."""
+        """Free the types of a closed domain, once Cyclone no longer refers to them."""
         while self._made:
             self._dds.ddsi_sertype_free(self._made.popitem()[1])
 
     def _new(self, participant: int, described_type: Any, what: str) -> int:
-        """The address of a type: that of an unused topic of the package's, which is deleted with `participant`.
+        """Create a type and return its address.
 
-        Were it deleted at once, Cyclone would forget the description again, while it reads those of other types
-        without a lock (``ddsi_topic_descriptor_from_type``): graphs of a process that joined at the same time crashed.
+        The type belongs to an unused topic of the Python package, which is deleted with `participant`. If the topic
+        were
+        deleted immediately, Cyclone would drop the description while it reads those of other types without a lock
+        (``ddsi_topic_descriptor_from_type``): graphs of a process that joined at the same time crashed.
         """
         name = _UNUSED.format(len(self._made))
         unused = checked(self._dds.create_topic(participant, name, described_type, None, None), what)
@@ -89,9 +93,11 @@ class TopicTypes:
 
 @lru_cache
 def _undescribing(table: int) -> int:
-    """The address of a copy of a table of functions without those that describe; its own if it is not as we know it.
+    """Return the address of a copy of a function table without the functions that describe types.
 
-    The copy is never freed: Cyclone may look into it as long as the process runs.
+    The address of the table itself is returned if its layout is unknown. The copy is never freed, because Cyclone may
+    use
+    it until the process ends.
     """
     dds = load()
     known = (c.c_void_p * _FUNCTIONS).from_address(table)

@@ -59,22 +59,24 @@ _LARGEST_KEPT = 16 << 20
 
 @lru_cache(maxsize=1)
 def keep_large_blocks() -> None:
-    """Have the C library keep blocks of the size of images when they are freed, for the next image.
+    """Make the C library keep freed blocks of the size of images for the next image.
 
-    By itself glibc gives them back to the system, which has to clear each page again: half of the processor's time that
-    a publisher of images takes. It keeps blocks up to the size of the largest that was ever mapped and freed
-    (``M_MMAP_THRESHOLD`` in mallopt(3)), so this function frees one, of pages that are never touched.
+    By default glibc returns them to the system, which has to clear each page again: half of the processor time of an
+    image
+    publisher. It keeps blocks up to the size of the largest block that was ever mapped and freed (``M_MMAP_THRESHOLD``
+    in
+    mallopt(3)), so this function frees such a block, whose pages are never touched.
     """
     bytes(_LARGEST_KEPT)
 
 
 def type_facts(message_class: Any) -> bytes:
-    """The type's hash as ROS 2 from Iron on announces it in USER_DATA; older ones ignore it."""
+    """Return the type's hash as USER_DATA, which ROS 2 announces from Iron on and older distributions ignore."""
     return f"typehash={type_hash(message_class)};".encode()
 
 
 class MirroredTopic(ABC):
-    """A reader or a writer that represents an endpoint of the process.
+    """A reader or a writer that represents an endpoint of this process.
 
     Args:
         endpoint: the subscription or publisher.
@@ -102,9 +104,9 @@ class MirroredTopic(ABC):
         self._log_limits = _LogLimits()
 
     def _describe_type(self, endpoint: Endpoint, domain: Domain) -> tuple[Any, bytes]:
-        """The type's description for Cyclone, and its hash for others in USER_DATA.
+        """Return the type's description for Cyclone, and its hash as USER_DATA for other participants.
 
-        A type that is in no package here has only a name, which suffices where bytes are carried.
+        A type that no package here defines has only a name, which suffices if the messages are raw bytes.
         """
         announced = f"typehash={endpoint.type_hash};".encode() if endpoint.type_hash else b""
         try:
@@ -115,13 +117,13 @@ class MirroredTopic(ABC):
             return domain.types.by_name(endpoint.type_name), announced
 
     def _profile_of(self, endpoint: Any) -> QoSProfile:
-        """The quality of service that is offered or asked for."""
+        """Return the quality of service that is offered or requested."""
         profile: QoSProfile = endpoint.qos_profile
         return profile
 
     @abstractmethod
     def _create(self, qos: Any) -> int:
-        """Make the reader or the writer."""
+        """Create the reader or the writer."""
 
 
 class OutgoingTopic(MirroredTopic):
@@ -129,9 +131,9 @@ class OutgoingTopic(MirroredTopic):
 
     Args:
         publisher: the publisher.
-        domain: where the others are.
+        domain: the domain to write in.
         mismatch: called when a subscription of another process requests more than is offered.
-        waiting: called when messages wait to be written: `review` is to be called soon.
+        waiting: called when messages wait to be written, so that `review` should be called soon.
     """
 
     _STATUS = PUBLICATION_MATCHED | OFFERED_INCOMPATIBLE_QOS
@@ -154,7 +156,7 @@ class OutgoingTopic(MirroredTopic):
         self.on_status()
 
     def on_status(self) -> bool:
-        """Handle changes of status: which readers match, and incompatible QoS."""
+        """Handle status changes: matched readers and incompatible QoS."""
         status = c.c_uint32()
         self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS)
         matched = MatchedStatus()
@@ -167,11 +169,11 @@ class OutgoingTopic(MirroredTopic):
         return False
 
     def review(self) -> bool:
-        """Write the samples that waited for acknowledgements that have come; whether a sample still waits."""
+        """Write the samples that no longer wait for acknowledgements; return whether a sample still waits."""
         return self._backlog is not None and self._backlog.review()
 
     def acknowledged(self, nanoseconds: int) -> bool:
-        """Wait until all reliable readers have acknowledged all published samples; whether they have."""
+        """Wait until all reliable readers have acknowledged all published samples; return whether they have."""
         until = time.monotonic_ns() + nanoseconds
         while self.review():
             if not self._are_acknowledged(max(0, until - time.monotonic_ns())):
@@ -186,7 +188,7 @@ class OutgoingTopic(MirroredTopic):
         self._participant.delete(self.entity, self._topic)
 
     def abandon(self) -> None:
-        """Send nothing any more, without calling Cyclone."""
+        """Stop sending, without calling Cyclone."""
         self._publisher.outside = None
         self._publisher.assert_outside = None
 
@@ -200,7 +202,7 @@ class OutgoingTopic(MirroredTopic):
         return self.acknowledged(0x7FFF_FFFF_FFFF_FFFF if seconds is None else int(seconds * 1e9))
 
     def _are_acknowledged(self, nanoseconds: int) -> bool:
-        """Whether all readers acknowledge, within the time given, all published samples that do not wait."""
+        """Return whether all readers acknowledge all samples that do not wait, within the given time."""
         until = time.monotonic_ns() + nanoseconds
         if self._paced is not None and not self._paced.wait_until_written(nanoseconds / 1e9):
             return False
@@ -208,7 +210,10 @@ class OutgoingTopic(MirroredTopic):
         return code >= 0
 
     def _make_paced(self, domain: Domain) -> PacedWriter | None:
-        """The writer for samples that newer ones replace, where packets are those that the pacer makes; else None."""
+        """Return a writer that sends through the pacer, or None if newer samples do not replace older ones.
+
+        It requires that the packets of Cyclone have the form that the pacer sends.
+        """
         profile = self._publisher.qos_profile
         if profile.history is HistoryPolicy.KEEP_ALL or domain.fragment_size != FRAGMENT:
             return None
@@ -216,12 +221,13 @@ class OutgoingTopic(MirroredTopic):
         return PacedWriter(self.guid, depth, self._write_published, self._fast_readers, domain.pacer)
 
     def _fast_readers(self) -> list[bytes]:
-        """The GUIDs of the readers of Fast DDS that the writer is connected with."""
+        """Return the GUIDs of the readers of Fast DDS that the writer is matched with."""
         known = map(self._remote.endpoint, self._dds.matched(self.entity, writer=True))
         return [endpoint.guid for endpoint in known if endpoint is not None and endpoint.is_fast]
 
     def _make_backlog(self, fragment_size: int) -> Backlog | None:
-        """The queue for large samples, where the writer replaces samples that readers may ask for again; else None."""
+        """Return a queue for large samples; None if the writer does not replace samples that readers may request again.
+        """
         profile = self._publisher.qos_profile
         is_reliable = profile.reliability is not ReliabilityPolicy.BEST_EFFORT
         if not is_reliable or profile.history is HistoryPolicy.KEEP_ALL:
@@ -258,10 +264,15 @@ class OutgoingTopic(MirroredTopic):
             self._write_published(data, None)
 
     def _write_published(self, data: bytes, published: int | None) -> bool:
-        """Hand a sample to Cyclone, with the time at which it was published where that was before; whether it takes it.
+        """Write a sample with Cyclone; return whether Cyclone accepted it.
 
-        Where everything is kept, or the sample was sent already, it retries until slow readers have caught up or the
-        lease of dead ones is over.
+        If the writer keeps all samples, or the sample has already been sent by the pacer, this method retries until
+        slow
+        readers have caught up or the lease of dead readers has expired.
+
+        Args:
+            data: the sample.
+            published: when it was published, in ns since the epoch; None for now.
         """
         sample = Sample(data, len(data))
         now = time.monotonic()
@@ -280,7 +291,7 @@ class OutgoingTopic(MirroredTopic):
         return code
 
     def _failed(self, code: int) -> None:
-        """Log that messages are not sent: once, and again after some time."""
+        """Log that messages are not sent: the first time, and again after some time."""
         if code >= 0 or self._participant.closed or self._publisher.destroyed or not self._log_limits.is_due("failed"):
             return
         reason = "the subscribers outside do not keep up" if code == TIMEOUT else describe(code)
@@ -292,7 +303,7 @@ class OutgoingTopic(MirroredTopic):
         """Report the subscriptions of other processes that request more than this publisher offers.
 
         Args:
-            finally_: whether to report even those whose node is not known by name yet.
+            finally_: whether to report subscriptions whose node name is not known yet, too.
         """
         offered = self._publisher.qos_profile
         for reader in self._remote.endpoints_of(self.topic_name, writers=False):
@@ -313,7 +324,7 @@ class IncomingTopic(MirroredTopic):
         self._subscription = subscription
 
     def on_status(self) -> bool:
-        """Hand on the samples that have come, and handle changes of status; whether there is more."""
+        """Pass on the samples that have arrived, and handle status changes; return whether there are more samples."""
         status = c.c_uint32()
         self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS & ~DATA_AVAILABLE)
         if status.value:
@@ -345,7 +356,7 @@ class IncomingTopic(MirroredTopic):
         return len(samples) == AT_ONCE
 
     def _gid_of(self, handle: int) -> bytes:
-        """The publisher's identifier, which the reader may know before discovery's tables have it."""
+        """Return the publisher's identifier, which the reader may know before the discovery tables have it."""
         endpoint = self._remote.endpoint(handle)
         if endpoint is not None:
             return endpoint.guid
@@ -382,7 +393,7 @@ class IncomingTopic(MirroredTopic):
 
 
 class _LogLimits:
-    """Remembers logged messages."""
+    """Limits how often messages are logged."""
 
     _AGAIN_AFTER = 30.0
 
@@ -391,13 +402,13 @@ class _LogLimits:
         self._logged: dict[str, float] = {}
 
     def is_new(self, guid: bytes) -> bool:
-        """Whether nothing was logged about an endpoint so far."""
+        """Return whether nothing has been logged for an endpoint so far."""
         is_new = guid not in self._guids
         self._guids.add(guid)
         return is_new
 
     def is_due(self, what: str) -> bool:
-        """Whether it is time to log a message, for the first time or again."""
+        """Return whether it is time to log a message, for the first time or again."""
         now = time.monotonic()
         is_due = now - self._logged.get(what, -self._AGAIN_AFTER) >= self._AGAIN_AFTER
         if is_due:

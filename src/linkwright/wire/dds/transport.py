@@ -47,16 +47,17 @@ class DdsTransport(BackgroundTransport):
         return DdsEngine(self._settings, self._remote, self._departures, self._work, self._logger)
 
     def _has_settled(self, quiet: float) -> bool:
-        """Whether every participant has announced its nodes, and nothing is new."""
+        """Return whether every participant has announced its nodes and there is nothing new."""
         return self._remote.is_complete() and (
             quiet >= SETTLED_AFTER or (quiet >= _SETTLED_AMONG_KNOWN and self._knows_everybody())
         )
 
     def _knows_everybody(self) -> bool:
-        """Whether all processes that can take part are known, so that there is nothing to wait for.
+        """Return whether all processes that can take part are known, so that there is nothing to wait for.
 
-        That is known only of Linkwright's processes on this machine, and only where no others are looked for. It is not
-        known where this process has several participants.
+        This can be known only for Linkwright's processes on this machine, and only if no others are looked for. It
+        cannot be
+        known if this process has several participants.
         """
         if self._settings.range is not Range.MACHINE:
             return False

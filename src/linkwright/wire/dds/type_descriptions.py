@@ -1,8 +1,8 @@
 """Descriptions of ROS types for Cyclone, which checks samples against them and announces them to other tools.
 
-Cyclone compares types structurally when both sides describe theirs, so they are described member by member, as
-rmw_cyclonedds_cpp does where it does (final, keyless; ``byte`` and ``char`` are unsigned octets; an empty message has
-the member that rosidl gives it). The content of samples never goes through these classes: it is CDR from
+Cyclone compares types structurally if both sides describe theirs. Therefore they are described member by member, like
+the types that rmw_cyclonedds_cpp describes (final, keyless; ``byte`` and ``char`` are unsigned octets; an empty message
+has the member that rosidl adds to it). The content of samples never passes through these classes: it is CDR from
 `linkwright.messages`.
 """
 
@@ -23,29 +23,29 @@ DISCOVERY_TYPE = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
 
 
 class UndescribableError(Exception):
-    """A type has a member that Cyclone's Python package has no word for (wide strings)."""
+    """Raised when a type has a member that Cyclone's Python package cannot describe (wide strings)."""
 
 
 class WireTypes:
-    """Makes the descriptions, each once; may be used from any thread."""
+    """Creates the descriptions, each once; may be used from any thread."""
 
     def __init__(self) -> None:
         self._made: dict[object, Any] = {}
         self._lock = RLock()
 
     def message(self, message_class: type[Any]) -> Any:
-        """The description of a message type."""
+        """Return the description of a message type."""
         return self._described(definition_of(message_class))
 
     def discovery(self) -> Any:
-        """The description of ``rmw_dds_common/msg/ParticipantEntitiesInfo``: its name, and nothing of its contents.
+        """Return the description of ``rmw_dds_common/msg/ParticipantEntitiesInfo``, which has only its name.
 
-        Those differ with the distribution (`discovery_info`), and Cyclone would reject data that do not fit.
+        Its members differ between distributions (`discovery_info`), and Cyclone would reject data that do not match.
         """
         return self._named(DISCOVERY_TYPE)
 
     def by_name(self, type_name: str) -> Any:
-        """The description of a message type by its name alone, of which Cyclone checks nothing."""
+        """Return a description of a message type that has only its name, so that Cyclone does not check its samples."""
         return self._named(dds_type(type_name))
 
     def _named(self, name: str) -> Any:
@@ -66,7 +66,7 @@ class WireTypes:
             for field in structure.wire_fields:
                 members[field.name] = self._member(field.type)
         except UndescribableError:
-            return {}  # the name alone identifies it to nodes that do not describe it either, such as real ROS 2 nodes
+            return {}  # the name suffices for nodes that do not describe the type either, such as real ROS 2 nodes
         return members
 
     def _member(self, field: FieldType) -> Any:
@@ -92,11 +92,11 @@ class WireTypes:
 
 
 def struct_class(type_name: str, members: dict[str, Any]) -> Any:
-    """A class that describes a structure.
+    """Create a class that describes a structure.
 
     Args:
         type_name: its DDS name.
-        members: their names and `cyclonedds.idl.types`.
+        members: the names and `cyclonedds.idl.types` of its members.
     """
     from cyclonedds.idl import make_idl_struct
 
@@ -117,10 +117,12 @@ _MINIMAL_ID, _COMPLETE_ID = 0x40001001, 0x40001002
 
 
 def empty_type_data(type_name: str) -> tuple[bytes, bytes]:
-    """TypeInformation and TypeMapping of a final structure without members (DDS-XTypes 1.3, 7.3.4 and 7.6.3.2.2).
+    """Return TypeInformation and TypeMapping of a final structure without members (DDS-XTypes 1.3, 7.3.4 and
+    7.6.3.2.2).
 
-    Cyclone's Python package makes the same, for which it imports classes of all of XTypes: that takes longer than to
-    join a domain and to find everybody in it.
+    Cyclone's Python package creates the same data, but imports classes for all of XTypes to do so: that takes longer
+    than
+    joining a domain and discovering all its participants.
 
     Args:
         type_name: its DDS name.
@@ -137,18 +139,18 @@ def empty_type_data(type_name: str) -> tuple[bytes, bytes]:
 
 
 def _with_dependencies(member_id: int, type_object: bytes) -> bytes:
-    """A TypeIdentifierWithDependencies, a mutable member."""
+    """Encode a TypeIdentifierWithDependencies as a member of a mutable structure."""
     sized_id = _sized(_type_id(type_object) + b"\0" + _number(len(type_object) + 4))
     return _number(member_id) + _sized(_sized(sized_id + _number(0) + _NO_MEMBERS))
 
 
 def _pair(type_object: bytes) -> bytes:
-    """A sequence of one TypeIdentifierTypeObjectPair."""
+    """Encode a sequence of one TypeIdentifierTypeObjectPair."""
     return _sized(_number(1) + _type_id(type_object) + b"\0" + _sized(type_object))
 
 
 def _type_id(type_object: bytes) -> bytes:
-    """Its EquivalenceHash behind the kind, EK_MINIMAL or EK_COMPLETE."""
+    """Encode the type identifier of a type object: its kind, EK_MINIMAL or EK_COMPLETE, and its EquivalenceHash."""
     return type_object[:1] + md5(_sized(type_object), usedforsecurity=False).digest()[:14]
 
 
@@ -161,5 +163,5 @@ def _number(value: int) -> bytes:
 
 
 def _idl_types() -> Any:
-    """`cyclonedds.idl.types`, whose classes are subscripted in ways of their own."""
+    """Return `cyclonedds.idl.types`, untyped because its classes use subscripts in unusual ways."""
     return import_module("cyclonedds.idl.types")

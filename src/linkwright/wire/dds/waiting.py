@@ -17,13 +17,14 @@ _AT_ONCE = 64
 
 
 class WaitingThread(threading.Thread):
-    """Calls handlers when the entities they were attached for have work.
+    """Calls the handlers of entities when there is work for them.
 
     Args:
-        name: of the thread.
+        name: the name of the thread.
         owner: the participant.
-        report: called with the error when a callback fails; the thread continues.
-        idle: called after the handlers, and whenever `wake` was called; gives the seconds after which it must be called
+        report: called with the error when a handler fails; the thread continues.
+        idle: called after the handlers, and after each call of `wake`; returns the seconds after which it must be
+            called
             again, or None.
     """
 
@@ -45,21 +46,21 @@ class WaitingThread(threading.Thread):
         self._stopping = False
 
     def attach(self, entity: int, handler: Handler) -> None:
-        """Have a handler called whenever an enabled status of an entity is set."""
+        """Register a handler that is called whenever an enabled status of an entity is set."""
         self._handlers[entity] = handler
         checked(self._dds.dds_waitset_attach(self._waitset, entity, entity), "attaching")
 
     def detach(self, entity: int) -> None:
-        """Call its handler no more; it may still be running."""
+        """Stop calling the handler of an entity, which may still be running."""
         self._handlers.pop(entity, None)
         self._dds.dds_waitset_detach(self._waitset, entity)
 
     def wake(self) -> None:
-        """Have `idle` called soon; from any thread."""
+        """Have `idle` called soon; may be called from any thread."""
         self._dds.dds_set_guardcondition(self._guard, True)
 
     def stop(self, timeout: float) -> bool:
-        """End the thread; whether it has ended within the seconds given."""
+        """End the thread; return whether it has ended within the given number of seconds."""
         self._stopping = True
         self.wake()
         if threading.current_thread() is not self and self.is_alive():
@@ -67,7 +68,7 @@ class WaitingThread(threading.Thread):
         return not self.is_alive()
 
     def run(self) -> None:
-        """Wait and call until `stop`."""
+        """Wait for work and call handlers until `stop` is called."""
         triggered = (c.c_ssize_t * _AT_ONCE)()
         taken = c.c_bool()
         unfinished: set[int] = set()

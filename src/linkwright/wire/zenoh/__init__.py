@@ -1,4 +1,4 @@
-"""Zenoh, as ROS 2 nodes with rmw_zenoh_cpp speak it. Importing this does not load the library."""
+"""Zenoh as ROS 2 nodes with rmw_zenoh_cpp use it. Importing this package does not load the library."""
 
 from linkwright.wire.zenoh.joining import join, why_not
 from linkwright.wire.zenoh.transport import ZenohTransport

@@ -1,7 +1,7 @@
-"""The attachment of each message, request and reply: 33 bytes, as rmw_zenoh_cpp has zenoh-ext write them.
+"""The attachment of each message, request and reply: 33 bytes, in the format that zenoh-ext writes for rmw_zenoh_cpp.
 
-They are a sequence number, the time of sending, and the gid of the sender. A receiving rmw_zenoh_cpp ends its process
-when they are malformed, so each sample has them.
+It contains a sequence number, the time of sending, and the gid of the sender. A receiving rmw_zenoh_cpp terminates its
+process if the attachment is malformed, so each sample has one.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ class Attachment(NamedTuple):
     """The attachment of a sample.
 
     Attributes:
-        number: the sequence number, from 1 on; a reply has that of its request.
-        sent_ns: when it was sent, nanoseconds since the epoch.
-        gid: of the publisher, or of the client, 16 bytes.
+        number: the sequence number, starting at 1; a reply has the number of its request.
+        sent_ns: when it was sent, in nanoseconds since the epoch.
+        gid: the gid of the publisher or the client, 16 bytes.
     """
 
     number: int
@@ -30,12 +30,12 @@ class Attachment(NamedTuple):
 
 
 def write(number: int, sent_ns: int, gid: bytes) -> bytes:
-    """The bytes of an attachment."""
+    """Encode an attachment."""
     return _LAYOUT.pack(number, sent_ns, GID_SIZE, gid)
 
 
 def read(data: bytes | None) -> Attachment | None:
-    """An attachment; None when there is none, or it is malformed."""
+    """Decode an attachment; return None if there is none or it is malformed."""
     if data is None or len(data) != _LAYOUT.size:
         return None
     number, sent_ns, size, gid = _LAYOUT.unpack(data)

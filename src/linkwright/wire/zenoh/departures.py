@@ -1,12 +1,12 @@
-"""Tells publishers that were lost (killed, crashed, out of reach) from those that left in order.
+"""Distinguish publishers that were lost (killed, crashed, out of reach) from publishers that left in order.
 
-A token disappears when its owner withdraws it, and when its session ends for any reason. Linkwright's sessions have a
-token of their own, and announce that they leave before it disappears: without the announcement their endpoints are
-lost. Other sessions withdraw the endpoints of a node before the node itself; at the end of a session that was killed
-all its tokens disappear at once, in no order. So an endpoint is lost if its node disappears before it.
+A token disappears when its owner withdraws it, and when its session ends for any reason. Linkwright's sessions have an
+additional token, and announce that they leave before that token disappears: without the announcement, their endpoints
+are lost. Other sessions withdraw the endpoints of a node before the node itself. When a session is killed, all its
+tokens disappear together, in no particular order. So an endpoint is lost if its node disappears before it.
 
-A client of a router asks for a session's other tokens once it knows of a publisher there (`Interests.follow`). A
-session that ends before the router has answered, milliseconds later, leaves no evidence: it counts as one that left.
+A client of a router requests a session's other tokens once it knows of a publisher there (`Interests.follow`). A
+session that ends before the router has answered, milliseconds later, leaves no evidence and is not counted as lost.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class _Gone:
     """A publisher that is gone.
 
     Attributes:
-        key: of its token.
+        key: the key expression of its token.
         token: its token.
         due: when it is judged, by the steady clock.
     """
@@ -43,10 +43,10 @@ class _Gone:
 
 
 class Departures:
-    """Judges how publishers left; everything except `watch` happens in the thread of discovery.
+    """Judges how publishers left; everything except `watch` runs in the discovery thread.
 
     Args:
-        remote: the graph outside.
+        remote: the remote graph.
         now: the steady clock, in seconds.
     """
 
@@ -62,12 +62,12 @@ class Departures:
         self._nodes_gone: dict[tuple[str, str], float] = {}
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
-        """Register a callback for lost publishers, called with each in the thread of discovery."""
+        """Register a callback for each lost publisher; it is called in the discovery thread."""
         self._watchers.append(lost)
 
     @property
     def is_watched(self) -> bool:
-        """Whether a callback is registered for publishers that are lost."""
+        """Whether a callback is registered for lost publishers."""
         return bool(self._watchers)
 
     @property
@@ -76,20 +76,20 @@ class Departures:
         return self._here
 
     def session_started(self, session: str) -> None:
-        """Note a session of Linkwright's."""
+        """Record that a Linkwright session has started."""
         self._here.add(session)
 
     def session_leaves(self, session: str) -> None:
-        """Note that a session of Linkwright's is about to end."""
+        """Record that a Linkwright session is about to end."""
         self._left.add(session)
 
     def session_ended(self, session: str) -> None:
-        """Note that a session of Linkwright's is there no more."""
+        """Record that a Linkwright session has ended."""
         self._here.discard(session)
         self._ended[session] = self._now()
 
     def token_removed(self, key: str, token: Token) -> None:
-        """Note a token that is gone."""
+        """Record that a token has disappeared."""
         if token.kind is None:
             self._nodes_gone[token.node_key] = self._now()
             return
@@ -99,7 +99,11 @@ class Departures:
             self._gone.append(_Gone(key, token, self._now() + GRACE))
 
     def review(self) -> float | None:
-        """Report the publishers that count as lost by now; seconds until it is to be called again, or None."""
+        """Report the publishers that count as lost by now.
+
+        Returns:
+            The seconds until the next call, or None if no call is needed.
+        """
         now = self._now()
         due = [gone for gone in self._gone if gone.due <= now]
         self._gone = [gone for gone in self._gone if gone.due > now]
@@ -123,7 +127,7 @@ class Departures:
         return token.node_key in self._unordered or self._remote.has_endpoints(token.node_key)
 
     def _forget(self, now: float) -> None:
-        """Forget nodes and sessions that are gone for long enough."""
+        """Forget nodes and sessions that have been gone for long enough."""
         for node_key, since in tuple(self._nodes_gone.items()):
             if now - since > GRACE:
                 del self._nodes_gone[node_key]

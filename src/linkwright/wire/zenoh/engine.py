@@ -1,7 +1,7 @@
-"""Makes and withdraws the mirrors of this process's endpoints in a Zenoh session.
+"""Create and withdraw the mirrors of this process's endpoints in a Zenoh session.
 
-One thread does it, in the order of asking, and keeps the tables of the graph outside. Zenoh's threads hand on incoming
-traffic, as bytes.
+One thread does this in the order of the requests, and updates the tables of the remote graph. Zenoh's threads pass on
+incoming traffic as bytes.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ _CLOSING_TIME = 1.0
 
 
 class Engine(AnyEngine):
-    """One session with its publishers, subscriptions, services and clients.
+    """A session with its publishers, subscriptions, services and clients.
 
     Args:
         settings: the domain and how to join it.
         remote: the tables to fill.
-        departures: judges how publishers outside left.
-        work: the queue of requests; others append to it and `wake`.
+        departures: judges how remote publishers left.
+        work: the queue of requests; other threads append to it and call `wake`.
         logger: logs problems.
         patience: opens the session.
 
@@ -85,23 +85,23 @@ class Engine(AnyEngine):
         self._interests = Interests(self._session, settings.domain_id, self._on_token)
 
     def start(self) -> None:
-        """Begin."""
+        """Start the thread."""
         self._here = self._session.liveliness().declare_token(self._own_token("here"))
         if not self._is_client:
             self._interests.add_all()
         self._thread.start()
 
     def wake(self) -> None:
-        """Look at the work soon; from any thread."""
+        """Have the queue of requests processed soon; may be called from any thread."""
         self._wake.set()
 
     def has_neighbours(self) -> bool:
-        """Whether another session, or a router, is linked to this one."""
+        """Return whether another session or a router is connected to this session."""
         info = self._session.info
         return bool(info.peers_zid() or info.routers_zid())
 
     def close(self) -> None:
-        """End. The departure of our nodes is announced, unless the process ends because of an error."""
+        """End the session; announce the departure of our nodes unless the process ends because of an error."""
         self._ended.set()
         self._wake.set()
         if self._thread.ident is not None and self._thread is not threading.current_thread():
@@ -118,7 +118,7 @@ class Engine(AnyEngine):
         close_session(self._session)
 
     def abandon(self) -> None:
-        """Send nothing more, and keep all objects of Zenoh for ever: in a forked process their end would never come."""
+        """Stop sending, and keep all Zenoh objects forever: in a forked process, destroying them would never finish."""
         import ctypes
 
         self._ended.set()
@@ -170,7 +170,7 @@ class Engine(AnyEngine):
 
         token = self._token_of(subscription, EndpointKind.SUBSCRIPTION)
         key = token.data_key
-        if token.type_hash == tokens.NO_HASH and self._settings.hashes:  # of a type that is not known here
+        if token.type_hash == tokens.NO_HASH and self._settings.hashes:  # type not known here: accept any hash
             key = tokens.data_key(token.domain_id, token.name, token.type_name, "*")
         self._announce(subscription, IncomingTopic(subscription, token, self._session, key, self._own_gids))
 
@@ -185,13 +185,15 @@ class Engine(AnyEngine):
         self._announce(client, OutsideServer(client, token, self._session, self._matches_changed))
 
     def open_presence(self, presence: Any) -> None:
-        """Show an endpoint that takes no part: only its token is declared."""
+        """Announce an endpoint that neither sends nor receives, by declaring its token."""
         token = self._token_of(presence, presence.kind)
         presence.gid = token.gid
         self._tokens[presence] = self._session.liveliness().declare_token(token.key)
 
     def close_endpoint(self, endpoint: Any) -> None:
-        """Stop mirroring an endpoint; its token goes first, so that no process counts on it any more."""
+        """Stop mirroring an endpoint; withdraw its token first, so that other processes no longer count on the
+        endpoint.
+        """
         token = self._tokens.pop(endpoint, None)
         if token is not None:
             token.undeclare()
@@ -204,7 +206,7 @@ class Engine(AnyEngine):
                 self._remote.forget_endpoints(kind, mirrored.token.data_key)
 
     def _announce(self, endpoint: Any, mirrored: Any) -> None:
-        """Have an endpoint known that can be reached by now."""
+        """Announce an endpoint that can be reached by now."""
         self._mirrored[endpoint] = mirrored
         if endpoint.is_listed:
             self._tokens[endpoint] = self._session.liveliness().declare_token(mirrored.token.key)
@@ -240,22 +242,22 @@ class Engine(AnyEngine):
         try:
             return type_hash(endpoint.type_name)
         except InterfaceNotFoundError:
-            if kind in (EndpointKind.SUBSCRIPTION, EndpointKind.CLIENT) and endpoint.raw:  # only the bytes are needed
+            if kind in (EndpointKind.SUBSCRIPTION, EndpointKind.CLIENT) and endpoint.raw:  # raw: bytes suffice
                 return tokens.NO_HASH
             raise
 
     def look_around(self, seconds: float, answered: Callable[[], None]) -> None:
-        """Discover the whole graph from now on.
+        """Start discovering the whole graph.
 
         Args:
-            seconds: the time after which every process has announced itself at the latest.
-            answered: called then, from any thread.
+            seconds: the maximum time that processes have to announce themselves.
+            answered: called when all have answered or the time is over, from any thread.
         """
         self._interests.ask_all(seconds, answered)
         self._interests.add_all()
 
     def note_news(self) -> None:
-        """Process the tokens that were heard of."""
+        """Process the tokens that were received."""
         while self._news:
             appeared, key = self._news.popleft()
             self._has_changed = self._note(appeared=appeared, key=key) or self._has_changed
@@ -267,7 +269,7 @@ class Engine(AnyEngine):
 
     @property
     def runs_this(self) -> bool:
-        """Whether the calling thread is the engine's own."""
+        """Whether the calling thread is the engine's thread."""
         return threading.current_thread() is self._thread
 
     # --- news, from threads of Zenoh ---------------------------------------------------------------------------------
@@ -302,7 +304,7 @@ class Engine(AnyEngine):
             self._remote.announce()
 
     def _note(self, *, appeared: bool, key: str) -> bool:
-        """Note a token; whether that changes the graph outside."""
+        """Record that a token appeared or disappeared; return whether that changes the remote graph."""
         if key.startswith(OURS):
             self._note_session(appeared=appeared, key=key)
             return False
@@ -317,13 +319,13 @@ class Engine(AnyEngine):
         return True
 
     def _note_session(self, *, appeared: bool, key: str) -> None:
-        """Note a token of a session of Linkwright's."""
+        """Record that a token of a Linkwright session appeared or disappeared."""
         _, _, session, what = key.split("/")
         if what == "here" and appeared:
             self._departures.session_started(session)
         elif what == "here":
             self._departures.session_ended(session)
-            self._follows = False  # no more tokens are to be heard of
+            self._follows = False  # stop listening to the tokens of that session
         elif appeared:
             self._departures.session_leaves(session)
 
@@ -333,7 +335,7 @@ class Engine(AnyEngine):
             mirrored.review(self._remote.count(kind, mirrored.token.data_key))
 
     def _look_for_router(self) -> None:
-        """Wait for a router, where ZENOH_ROUTER_CHECK_ATTEMPTS asks for that; then continue without one."""
+        """Wait for a router if ZENOH_ROUTER_CHECK_ATTEMPTS requests it, then continue without one."""
         attempts = self._settings.attempts
         for attempt in itertools.count():
             if self._ended.is_set() or (attempts is not None and attempt >= attempts):
@@ -348,7 +350,7 @@ class Engine(AnyEngine):
             )
 
     def _announce_departure(self) -> None:
-        """Announce that this session leaves, and withdraw endpoints, then nodes."""
+        """Announce that this session leaves, then withdraw its endpoints and its nodes."""
         left = self._session.liveliness().declare_token(self._own_token("left"))
         for token in self._tokens.values():
             token.undeclare()

@@ -1,8 +1,8 @@
-"""The tokens that a session hears of.
+"""The liveliness tokens that a session subscribes to.
 
-The router sends every token to each session that asks for all: in a hall of robots that is the square of their number.
-So a client of a router, as robots are, asks only for the tokens that its own nodes and endpoints need, until the graph
-is queried (`docs/decisions/0076-tokens-on-demand.md`).
+The router sends every token to each session that subscribes to all tokens. In a hall of robots, that is the square of
+their number. Therefore a client of a router, as robots are, subscribes only to the tokens that its own nodes and
+endpoints need, until the graph is queried (`docs/decisions/0076-tokens-on-demand.md`).
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ OURS = "@linkwright"
 
 
 class Interests:
-    """The tokens that a session subscribes to; used by one thread, after `__init__`.
+    """The tokens that a session subscribes to; used by one thread after `__init__`.
 
     Args:
         session: the session.
         domain_id: the ROS domain.
-        hear: called with each token that appears or goes, from threads of Zenoh.
+        hear: called with each token that appears or disappears, from threads of Zenoh.
     """
 
     def __init__(self, session: zenoh.Session, domain_id: int, hear: Callable[[zenoh.Sample], None]) -> None:
@@ -42,13 +42,13 @@ class Interests:
         """Whether all tokens of the domain are heard of."""
 
     def add(self, key: str) -> None:
-        """Hear of the tokens of a key expression; as often as it is asked for."""
+        """Subscribe to the tokens that match a key expression; subscriptions to the same expression are counted."""
         self._counts[key] += 1
         if not self.in_all and self._counts[key] == 1:
             self._declare(key)
 
     def remove(self, key: str) -> bool:
-        """Undo `add`; whether these tokens are not asked for any more."""
+        """Undo one `add`; return whether these tokens are no longer subscribed to."""
         self._counts[key] -= 1
         if self._counts[key]:
             return False
@@ -59,10 +59,12 @@ class Interests:
         return not self.in_all
 
     def follow(self, publishing: AbstractSet[str], there: AbstractSet[str]) -> None:
-        """Hear of all tokens of other sessions, which show how the sessions leave, until none of theirs is left.
+        """Subscribe to all tokens of other sessions, which show how the sessions leave.
+
+        The subscription to a session ends when none of its tokens is left.
 
         Args:
-            publishing: the sessions whose publishers are known; not asked for once all tokens are heard of.
+            publishing: the sessions whose publishers are known; ignored once all tokens are subscribed to.
             there: the live sessions, known by their own token or any other.
         """
         for session in self._followed - there:
@@ -77,7 +79,7 @@ class Interests:
         return f"{self._sessions}/{session}/*", self._all.replace("**", f"{session}/**")
 
     def add_all(self) -> None:
-        """Hear of all tokens of the domain."""
+        """Subscribe to all tokens of the domain."""
         if self.in_all:
             return
         self.in_all = True
@@ -88,7 +90,8 @@ class Interests:
             declared.undeclare()
 
     def ask_all(self, seconds: float, answered: Callable[[], None]) -> None:
-        """Ask for the live tokens of the domain; before `add_all`, after which Zenoh answers from its own memory.
+        """Request the live tokens of the domain; call it before `add_all`, after which Zenoh answers from its own
+        memory.
 
         Args:
             seconds: the longest wait.
@@ -103,7 +106,7 @@ class Interests:
         self._liveliness.get(self._all, handler, timeout=seconds)
 
     def close(self) -> None:
-        """Hear of nothing any more."""
+        """End all subscriptions."""
         for declared in self._declared.values():
             declared.undeclare()
         self._declared.clear()

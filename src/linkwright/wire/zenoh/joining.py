@@ -1,4 +1,4 @@
-"""Joins a graph to others over Zenoh, if it is installed: that is found out without the import."""
+"""Join a graph to others over Zenoh, if it is installed, which is checked without the import."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
 
 
 def is_installed() -> bool:
-    """Whether the packages are installed."""
+    """Return whether the packages are installed."""
     return find_spec("zenoh") is not None and find_spec("xxhash") is not None
 
 
 def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
-    """Why this process does not use Zenoh; empty when it does.
+    """Return the reason why this process does not use Zenoh; empty if it does.
 
     Args:
-        environment: the environment variables; those of the process when left out.
+        environment: the environment variables; those of this process if omitted.
     """
     if is_switched_off(environment):
         return switched_off()
@@ -44,5 +44,5 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
 
 
 def join(graph: Graph, **options: Unpack[JoinOptions]) -> ZenohTransport | None:
-    """Have a graph seen by other processes over Zenoh, and see theirs; None where that cannot be."""
+    """Connect a graph to other processes over Zenoh; return None if that is not possible."""
     return join_with(graph, "zenoh", read_settings, ZenohTransport, why_not, options)

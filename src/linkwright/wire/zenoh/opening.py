@@ -1,4 +1,4 @@
-"""Opening a session that waits for its router or peers, with a log of the reasons and a way to interrupt it."""
+"""Open a session that waits for its router or peers, log the reasons for the wait, and allow it to be interrupted."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ _LOGGED_AGAIN_AFTER = 10.0
 
 
 class Patience:
-    """Opens sessions for as long as their configuration says, or until it is given up.
+    """Opens sessions, retrying for as long as their configuration allows or until `given_up` is set.
 
-    Zenoh waits by itself, too, but cannot be interrupted then, and reports nothing.
+    Zenoh can wait itself, but then it cannot be interrupted and reports nothing.
 
     Args:
-        logger: logs the reason of a wait.
-        given_up: set when the session is not needed any more.
+        logger: logs the reason for a wait.
+        given_up: set when the session is no longer needed.
     """
 
     def __init__(self, logger: Logger, given_up: threading.Event) -> None:
@@ -40,10 +40,10 @@ class Patience:
         """Whether a session is being opened that waits for others."""
 
     def open(self, config: zenoh.Config) -> zenoh.Session:
-        """A session.
+        """Open a session.
 
         Raises:
-            LinkwrightError: DDS112, it cannot be opened, no process was reached in time, or it was given up before.
+            LinkwrightError: DDS112, it cannot be opened, no process was reached in time, or waiting was interrupted.
         """
         seconds = _waits(config)
         if seconds == 0:
@@ -72,12 +72,12 @@ class Patience:
 
 
 class ObstacleReporter:
-    """Reports from a thread the obstacles to the addresses that a session connects to.
+    """Reports, from a thread, why the addresses that a session connects to cannot be reached.
 
     Args:
-        config: the session's.
-        log: called from a thread with the obstacles.
-        linked: whether there is nothing to report for now.
+        config: the configuration of the session.
+        log: called from a thread with the reasons.
+        linked: returns whether there is currently nothing to report.
     """
 
     def __init__(
@@ -90,11 +90,11 @@ class ObstacleReporter:
         self._thread = threading.Thread(target=self._run, name="linkwright-zenoh-waits", daemon=True)
 
     def start(self) -> None:
-        """Begin."""
+        """Start the thread."""
         self._thread.start()
 
     def end(self) -> None:
-        """Report no more; it takes a moment where an address is just being called."""
+        """Stop reporting; the thread ends a moment later if it is just trying to reach an address."""
         self._over.set()
 
     def _run(self) -> None:
@@ -112,7 +112,7 @@ class ObstacleReporter:
 
 
 def _try(config: zenoh.Config) -> zenoh.Session | zenoh.ZError:
-    """A session, or why there is none."""
+    """Open a session; return it, or the error that prevented it."""
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:
@@ -120,7 +120,7 @@ def _try(config: zenoh.Config) -> zenoh.Session | zenoh.ZError:
 
 
 def _waits(config: zenoh.Config) -> float:
-    """Seconds for which a configuration lets the opening of a session wait until it is connected."""
+    """Return how many seconds a configuration lets a new session wait for a connection."""
     is_client = of_mode(config, "mode", default="peer") == "client"
     if not asked_for(config) or not of_mode(config, "connect/exit_on_failure", default=is_client):
         return 0.0

@@ -1,7 +1,7 @@
-"""Quality of service as one chunk of a liveliness token.
+"""Encode quality of service as one chunk of a liveliness token.
 
-``<reliability>:<durability>:<history>,<depth>:<deadline>:<lifespan>:<liveliness>,<lease>`` with times as seconds and
-nanoseconds; defaults of rmw_zenoh_cpp are left empty.
+The form is ``<reliability>:<durability>:<history>,<depth>:<deadline>:<lifespan>:<liveliness>,<lease>`` with times in
+seconds and nanoseconds; values that are the default of rmw_zenoh_cpp are left empty.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ _DEFAULT_DEPTH = 42
 
 
 def write(profile: QoSProfile) -> str:
-    """The chunk of a profile."""
+    """Return the chunk for a profile."""
     qos = resolved(profile)
-    # A depth that is left to the middleware is the default.
+    # A depth that is left to the middleware becomes the default.
     keeps_all = qos.history is HistoryPolicy.KEEP_ALL
     depth = _DEFAULT_DEPTH if profile.depth == 0 else profile.depth
     reliability = "" if qos.reliability is ReliabilityPolicy.RELIABLE else str(int(qos.reliability))
@@ -43,10 +43,10 @@ def write(profile: QoSProfile) -> str:
 
 
 def read(text: str) -> QoSProfile:
-    """The profile of a chunk.
+    """Return the profile for a chunk.
 
     Raises:
-        ValueError: it is none.
+        ValueError: the text is not a profile.
     """
     reliability, durability, history, deadline, lifespan, liveliness = text.split(":")
     kind, depth = history.split(",")

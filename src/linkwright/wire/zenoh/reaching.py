@@ -1,6 +1,6 @@
-"""The reasons why a connection to an address fails, which Zenoh itself does not give.
+"""Find the reasons why a connection to an address fails, which Zenoh itself does not report.
 
-The address is called as Zenoh calls it, as far as sockets and TLS are concerned.
+Like Zenoh, it connects to the address, as far as sockets and TLS are concerned.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ _CALLED = ("tcp", "tls")
 
 
 def asked_for(config: zenoh.Config) -> list[str]:
-    """The addresses that a configuration has a session connect to."""
+    """Return the addresses that a session with this configuration connects to."""
     addresses = of_mode(config, "connect/endpoints", default=[])
     flat = [address for group in addresses for address in (group if isinstance(group, list) else [group])]
     return [str(address) for address in flat]
 
 
 def of_mode(config: zenoh.Config, key: str, *, default: Any) -> Any:
-    """A setting that may differ by mode, such as ``{client: 0, peer: -1}``."""
+    """Return the value of a setting that may differ by mode, such as ``{client: 0, peer: -1}``."""
     value = json.loads(config.get_json(key))
     if isinstance(value, dict):
         value = value.get(json.loads(config.get_json("mode")) or "peer")
@@ -42,7 +42,7 @@ def of_mode(config: zenoh.Config, key: str, *, default: Any) -> Any:
 
 
 def obstacles(config: zenoh.Config) -> list[Phrase]:
-    """The reasons why a session cannot connect to its addresses, as far as they are found."""
+    """Return the known reasons why a session cannot connect to its addresses."""
     tls = json.loads(config.get_json("transport/link/tls")) or {}
     found = [found for address in asked_for(config) if (found := obstacle(address, tls))]
     if not found and json.loads(config.get_json("id")) is not None:
@@ -51,10 +51,10 @@ def obstacles(config: zenoh.Config) -> list[Phrase]:
 
 
 def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
-    """Why a connection to an address fails; empty where no reason is found.
+    """Return the reason why a connection to an address fails; empty if none is found.
 
     Args:
-        address: such as ``tls/cloud.example.com:7448``.
+        address: the address, such as ``tls/cloud.example.com:7448``.
         tls: the settings below ``transport/link/tls``.
     """
     parts = _ADDRESS.fullmatch(address)
@@ -84,7 +84,7 @@ def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
 
 
 def _silence(address: str, called: socket.socket) -> Phrase:
-    """Whether the listener hangs up on a first message of Zenoh's, as one does that speaks TLS or another protocol."""
+    """Send a first Zenoh message; return a reason if the listener answers with TLS, otherwise an empty phrase."""
     called.settimeout(_PATIENCE / 4)
     try:
         called.sendall(b"\x04\0\x01\x08\0\0")
@@ -106,7 +106,7 @@ def _tls_obstacle(address: str, called: socket.socket, host: str, tls: Mapping[s
     ):
         return Phrase("")
     context = ssl.create_default_context()
-    context.verify_flags &= ~ssl.VERIFY_X509_STRICT  # which Python sets from 3.13 on, and Zenoh does not ask for
+    context.verify_flags &= ~ssl.VERIFY_X509_STRICT  # Python sets this flag from 3.13 on, but Zenoh does not require it
     context.check_hostname = tls.get("verify_name_on_connect") is not False
     authority, certificate, key = (
         tls.get(setting) or "" for setting in ("root_ca_certificate", "connect_certificate", "connect_private_key")

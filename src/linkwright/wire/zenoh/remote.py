@@ -1,4 +1,4 @@
-"""The nodes and endpoints of other sessions, by their liveliness tokens."""
+"""The nodes and endpoints of other sessions, from their liveliness tokens."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _GONE_FOR = 0.5
 
 
 class RemoteGraph(Outside):
-    """The nodes and endpoints of other sessions; `Outside` names the threads that write and read it."""
+    """The nodes and endpoints of other sessions; see `Outside` for the threads that write and read them."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -29,7 +29,10 @@ class RemoteGraph(Outside):
     # --- from discovery ----------------------------------------------------------------------------------------------
 
     def add(self, key: str, token: Token) -> bool:
-        """Record a token by its key expression, to which newer distributions may have added; whether it is new."""
+        """Record a token under its key expression; return whether it is new.
+
+        Newer distributions may have appended chunks to the key expression.
+        """
         with self._lock:
             if key in self._tokens:
                 return False
@@ -39,18 +42,19 @@ class RemoteGraph(Outside):
         return True
 
     def has_just_gone(self, key: str) -> bool:
-        """Whether the news of a live token is older than the news of its end, as far as that is known.
+        """Return whether a token disappeared a moment ago, so that news that it is alive is outdated.
 
-        Zenoh answers a session that asks again for tokens that it knows already in a task of its own, which the news of
-        the token's end may overtake. A token that comes back with a broken link takes longer.
+        If a session requests tokens that it already knows, Zenoh answers in a separate task, and the news of a token's
+        end may
+        overtake the answer. A token that reappears after a broken connection takes longer.
         """
         return key in self._gone and time.monotonic() - self._gone[key] < _GONE_FOR
 
     def remove(self, key: str) -> Token | None:
-        """Remove a token; None when it was not known."""
+        """Remove a token and return it; None if it was not known."""
         now = time.monotonic()
         for old in [gone_key for gone_key in islice(self._gone, 2) if now - self._gone[gone_key] > _GONE_FOR]:
-            del self._gone[old]  # of those in order of their going two for each, so that few remain
+            del self._gone[old]  # removes up to the two oldest per call: few remain
         self._gone.pop(key, None)
         self._gone[key] = now
         with self._lock:
@@ -63,7 +67,7 @@ class RemoteGraph(Outside):
         return token
 
     def forget_endpoints(self, kind: EndpointKind, data_key: str) -> None:
-        """Remove the endpoints of a kind at a key that is not heard of any more."""
+        """Remove the endpoints of a kind at a key whose tokens are no longer subscribed to."""
         with self._lock:
             gone = [key for key, token in self._tokens.items() if (token.kind, token.data_key) == (kind, data_key)]
             for key in gone:
@@ -71,39 +75,39 @@ class RemoteGraph(Outside):
             self._counts.pop((kind, data_key), None)
 
     def forget_nodes(self, full_name: str) -> None:
-        """Remove the nodes of a name that is not heard of any more."""
+        """Remove the nodes with a name whose tokens are no longer subscribed to."""
         with self._lock:
             for key in [key for key, token in self._tokens.items() if token.kind is None]:
                 if self._tokens[key].node.full_name == full_name:
                     del self._tokens[key]
 
-    # --- asked by the transport --------------------------------------------------------------------------------------
+    # --- queries of the transport ------------------------------------------------------------------------------------
 
     def count(self, kind: EndpointKind, data_key: str) -> int:
-        """How many endpoints of a kind there are at a key."""
+        """Return the number of endpoints of a kind at a key."""
         return self._counts[kind, data_key]
 
     def has_endpoints(self, node_key: tuple[str, str]) -> bool:
-        """Whether there are endpoints of a node, by `Token.node_key`."""
+        """Return whether a node, given by its `Token.node_key`, has endpoints."""
         with self._lock:
             return any(token.kind is not None and token.node_key == node_key for token in self._tokens.values())
 
     def is_there(self, key: str) -> bool:
-        """Whether there is a token."""
+        """Return whether a token exists."""
         return key in self._tokens
 
     def sessions(self, kind: EndpointKind | None = None) -> set[str]:
-        """The sessions that anything is known of, or that have endpoints of a kind."""
+        """Return the known sessions, or those that have endpoints of a kind."""
         with self._lock:
             return {token.session for token in self._tokens.values() if kind is None or token.kind is kind}
 
     def nodes(self) -> list[NodeIdentity]:
-        """The nodes of other sessions."""
+        """Return the nodes of other sessions."""
         with self._lock:
             return [token.node for token in self._tokens.values() if token.kind is None]
 
     def endpoints(self) -> list[EndpointInfo]:
-        """The endpoints of other sessions."""
+        """Return the endpoints of other sessions."""
         with self._lock:
             tokens = list(self._tokens.values())
         return [info for token in tokens if (info := token.described()) is not None]

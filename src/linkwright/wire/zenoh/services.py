@@ -29,7 +29,7 @@ _WAITS_FOR_RESULT = 30 * 24 * 3600.0
 
 
 class OutsideServer:
-    """The servers of other processes, as a client of this one calls them (`graph.endpoints.client.OutsideService`).
+    """The servers of other processes, as a client of this process calls them (`graph.endpoints.client.OutsideService`).
 
     Args:
         client: the client.
@@ -58,7 +58,7 @@ class OutsideServer:
         self._listener = self._querier.declare_matching_listener(listener)
 
     def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
-        """Send a request; returns a function that gives it up."""
+        """Send a request; return a function that cancels it."""
         self._answers[number] = answer
         handler: Any = Callback(partial(self._receive, number), partial(self._end, number), indirect=False)
         about = attachment.write(number, time.time_ns(), self.token.gid)
@@ -66,10 +66,10 @@ class OutsideServer:
         return partial(self._forget, number)
 
     def review(self, count: int) -> None:
-        """Find out whether a server is there that can be reached.
+        """Update whether there is a server that can be reached.
 
         Args:
-            count: how many servers outside are known.
+            count: the number of known remote servers.
         """
         is_ready = count > 0 and self._querier.matching_status.matching
         if is_ready != self._is_ready:
@@ -77,18 +77,18 @@ class OutsideServer:
             self._client.set_outside(self if is_ready else None)
 
     def close(self) -> None:
-        """Leave; requests without a reply stay so."""
+        """Withdraw the client; pending requests stay unanswered."""
         self._client.set_outside(None)
         self._answers.clear()
         self._listener.undeclare()
         self._querier.undeclare()
 
     def abandon(self) -> None:
-        """Send no more requests, without calling Zenoh."""
+        """Stop sending requests, without calling Zenoh."""
         self._client.outside = None
 
     def _receive(self, number: int, reply: zenoh.Reply) -> None:
-        """Hand the first reply on, in a thread of Zenoh."""
+        """Pass on the first reply, in a thread of Zenoh."""
         sample = reply.ok
         if sample is None:
             return
@@ -97,7 +97,7 @@ class OutsideServer:
             hand_response_on(sample.payload.to_bytes(), self._client, answer)
 
     def _end(self, number: int) -> None:
-        """Log once that a request has ended without a reply: its future stays open, as rclpy's does."""
+        """Log, once, that a request has ended without a reply; its future stays pending, as in rclpy."""
         if self._answers.pop(number, None) is not None and not self._warned and not self._client.destroyed:
             self._warned = True
             self._client.node.logger.warning(
@@ -133,17 +133,17 @@ class IncomingService:
         self._lock = Lock()
 
     def close(self) -> None:
-        """Answer other processes no more; waiting clients learn that no reply will come."""
+        """Stop answering other processes; waiting clients are notified that no reply will come."""
         self._queryable.undeclare()
         with self._lock:
-            self._closed = True  # a request may be on its way here in a thread of Zenoh
+            self._closed = True  # a thread of Zenoh may be about to deliver a request
             questions = list(self._open)
             self._open.clear()
         for question in questions:
             question.drop()
 
     def _receive(self, query: zenoh.Query) -> None:
-        """Have a request answered, in a thread of Zenoh."""
+        """Pass a request to the service, in a thread of Zenoh."""
         about = attachment.read(None if query.attachment is None else query.attachment.to_bytes())
         body = None if query.payload is None else query.payload.to_bytes()
         if about is None or body is None:
@@ -162,7 +162,7 @@ class IncomingService:
 
     def _reply(self, question: _Question, response: Any) -> None:
         with self._lock:
-            if question not in self._open:  # it was dropped, or answered before
+            if question not in self._open:  # it was dropped, or has already been answered
                 return
             self._open.discard(question)
         question.answer(response, self.token.data_key)
@@ -172,7 +172,7 @@ class _Question:
     """A request that waits for its reply.
 
     Args:
-        query: Zenoh's; the client waits until it is dropped.
+        query: Zenoh's query; the client waits until it is dropped.
         about: the attachment of the query.
     """
 

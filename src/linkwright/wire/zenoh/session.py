@@ -1,4 +1,4 @@
-"""Opens a Zenoh session with the settings of the environment."""
+"""Open a Zenoh session with the settings of the environment."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _CLOSING_LIMIT = 3.0
 
 
 def open_with(config: zenoh.Config) -> zenoh.Session:
-    """A session with a configuration.
+    """Open a session with a configuration.
 
     Raises:
         LinkwrightError: DDS112, it cannot be opened.
@@ -33,21 +33,23 @@ def open_with(config: zenoh.Config) -> zenoh.Session:
 
 
 def close_session(session: zenoh.Session) -> None:
-    """Close a session, or leave that to Zenoh where it takes long: it waits for lines that are full, without a limit.
+    """Close a session, in the background if that takes long.
 
-    Returns after `_CLOSING_LIMIT` at the latest; the process can end then.
+    Zenoh waits without a limit for connections whose buffers are full. This function returns after `_CLOSING_LIMIT` at
+    the
+    latest; then the process can end.
     """
     closing = threading.Thread(target=session.close, name="linkwright-zenoh-close", daemon=True)
     try:
         closing.start()
-    except RuntimeError:  # Python ends already, and starts no threads any more
+    except RuntimeError:  # Python is shutting down and starts no more threads
         session.close()
     else:
         closing.join(_CLOSING_LIMIT)
 
 
 def refusal(error: zenoh.ZError, config: zenoh.Config) -> LinkwrightError:
-    """The error for a session that cannot be opened, DDS112."""
+    """Return the error DDS112 for a session that cannot be opened."""
     found = obstacles(config) if could_not_connect(error) else []
     return LinkwrightError(
         Diagnostic(
@@ -60,12 +62,12 @@ def refusal(error: zenoh.ZError, config: zenoh.Config) -> LinkwrightError:
 
 
 def could_not_connect(error: zenoh.ZError) -> bool:
-    """Whether a session cannot be opened because none of its addresses is reached."""
+    """Return whether a session could not be opened because none of its addresses was reached."""
     return _NOT_CONNECTED in str(error)
 
 
 def is_client(settings: Settings) -> bool:
-    """Whether settings make a client of a router.
+    """Return whether the settings make a session a client of a router.
 
     Raises:
         LinkwrightError: DDS111, the configuration is refused.
@@ -74,16 +76,16 @@ def is_client(settings: Settings) -> bool:
 
 
 def listening_at(config: zenoh.Config) -> list[str]:
-    """The addresses that a configuration listens at, where it is the same for all kinds of sessions."""
+    """Return the addresses that a configuration listens at, if they are the same for all session modes."""
     addresses = json.loads(config.get_json("listen/endpoints"))
     return [str(address) for address in addresses] if isinstance(addresses, list) else []
 
 
 def configuration(settings: Settings) -> zenoh.Config:
-    """The configuration that the settings make.
+    """Return the Zenoh configuration for the settings.
 
     Raises:
-        LinkwrightError: DDS111, it is refused.
+        LinkwrightError: DDS111, the configuration is refused.
     """
     if settings.file:
         try:
@@ -119,7 +121,7 @@ def _override(config: zenoh.Config, key: str, value: str) -> None:
 
 
 def _reason(error: Exception) -> str:
-    """The words of an error, without the places in Zenoh's source."""
+    """Return the message of an error, without the locations in Zenoh's source."""
     return _PLACE.sub("", str(error)).strip().rstrip(".")
 
 

@@ -1,7 +1,7 @@
-"""The settings of Zenoh from the environment: the domain, the session's configuration, the wait for a router.
+"""The settings of Zenoh from the environment: the domain, the configuration of the session, the wait for a router.
 
-The variables are those of rmw_zenoh_cpp. Left to itself a session is configured as there, and besides finds those of
-Linkwright on this machine where no router runs (`docs/decisions/0066-zenoh.md`).
+The variables are those of rmw_zenoh_cpp. By default a session is configured as in rmw_zenoh_cpp, and also finds
+Linkwright's sessions on this machine if no router is running (`docs/decisions/0066-zenoh.md`).
 """
 
 from __future__ import annotations
@@ -62,9 +62,9 @@ class Settings:
 
     Attributes:
         domain_id: the ROS domain.
-        file: of the configuration, in place of our own; empty for none.
+        file: the configuration file that replaces our own configuration; empty for none.
         own: our own configuration.
-        overrides: entries that are set last, on top of either.
+        overrides: entries that are applied last, to either configuration.
         attempts: how many times to look for a router, a second apart, before continuing; None for no limit.
         hashes: whether types have a hash on the wire; in Humble they have none.
     """
@@ -78,14 +78,14 @@ class Settings:
 
 
 def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: int | None = None) -> Settings:
-    """The settings of an environment.
+    """Read the settings from environment variables.
 
     Args:
-        environment: the variables; those of the process when left out.
-        domain_id: takes the place of ROS_DOMAIN_ID.
+        environment: the variables; those of this process if omitted.
+        domain_id: takes precedence over ROS_DOMAIN_ID.
 
     Raises:
-        LinkwrightError: DDS101, the domain is not one; DDS111, a variable is not well formed.
+        LinkwrightError: DDS101, the domain is not valid; DDS111, a variable is malformed.
     """
     variables = os.environ if environment is None else environment
     domain_id = read_domain_id(variables, domain_id)
@@ -100,19 +100,19 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
 
 
 def read_router_settings(environment: Mapping[str, str] | None = None) -> Settings:
-    """The settings of a router.
+    """Read the settings of a router.
 
     Raises:
-        LinkwrightError: DDS111, a variable is not well formed.
+        LinkwrightError: DDS111, a variable is malformed.
     """
     variables = os.environ if environment is None else environment
     return Settings(0, _path(variables.get(ROUTER_FILE, "")), _ROUTER, _overrides(variables))
 
 
 def _session(domain_id: int) -> Entries:
-    """A peer of this machine.
+    """Return the configuration of a peer that communicates only on this machine.
 
-    It announces itself by multicast that never leaves the machine, at an address of its domain.
+    It announces itself by multicast that never leaves the machine, at an address for its domain.
     """
     loopback = _LOOPBACK.get(sys.platform, "auto")
     return (
@@ -156,7 +156,7 @@ def _overrides(variables: Mapping[str, str]) -> Entries:
 
 
 def _attempts(variables: Mapping[str, str]) -> int | None:
-    """How often to look for a router: not at all unless it is asked for (unlike rmw_zenoh_cpp)."""
+    """Return how often to look for a router: by default never, unlike rmw_zenoh_cpp."""
     text = variables.get(ATTEMPTS, "").strip()
     if not text:
         return 0

@@ -1,8 +1,8 @@
-"""Keys of data, and the liveliness tokens by which nodes and endpoints are known, as rmw_zenoh_cpp writes them.
+"""The keys of data, and the liveliness tokens that announce nodes and endpoints, as rmw_zenoh_cpp writes them.
 
 The data of a topic or service has the key ``<domain>/<name>/<type>/<hash>``. A token is
-``@ros2_lv/<domain>/<session>/<node's id>/<id>/<kind>/<enclave>/<namespace>/<node>``, for an endpoint followed by
-``<name>/<type>/<hash>/<QoS>``; a slash inside of one of its chunks becomes ``%``.
+``@ros2_lv/<domain>/<session>/<node's id>/<id>/<kind>/<enclave>/<namespace>/<node>``, followed for an endpoint by
+``<name>/<type>/<hash>/<QoS>``; a slash within a chunk becomes ``%``.
 """
 
 from __future__ import annotations
@@ -44,14 +44,14 @@ class Token:
     Attributes:
         domain_id: the ROS domain.
         session: the id of its Zenoh session.
-        node_id: of its node in the session.
-        entity_id: of itself; a node's own id.
+        node_id: the id of its node in the session.
+        entity_id: its own id; for a node, equal to `node_id`.
         node: its node.
-        kind: of the endpoint; None for a node.
+        kind: the kind of the endpoint; None for a node.
         name: the absolute ROS name of the topic or service.
-        type_name: as on the wire, ``std_msgs::msg::dds_::String_``.
+        type_name: the type as on the wire, ``std_msgs::msg::dds_::String_``.
         type_hash: ``RIHS01_...``, or `NO_HASH`.
-        qos: as on the wire, see `qos_text`.
+        qos: the QoS as on the wire, see `qos_text`.
     """
 
     domain_id: int
@@ -78,23 +78,23 @@ class Token:
 
     @cached_property
     def data_key(self) -> str:
-        """The key of the data of the endpoint's topic or service."""
+        """The key of the data of its topic or service."""
         return data_key(self.domain_id, self.name, self.type_name, self.type_hash)
 
     @cached_property
     def gid(self) -> bytes:
-        """The endpoint's gid: the 128-bit XXH3 of the token, its least significant byte first."""
+        """The endpoint's gid: the 128-bit XXH3 hash of the token, least significant byte first."""
         from xxhash import xxh3_128_digest
 
         return bytes(reversed(xxh3_128_digest(self.key.encode())))
 
     @property
     def node_key(self) -> tuple[str, str]:
-        """The key that a node and its endpoints have in common."""
+        """The key shared by a node and its endpoints."""
         return self.session, self.node_id
 
     def described(self) -> EndpointInfo | None:
-        """In ROS's terms; None for nodes, and for endpoints outside of ROS."""
+        """Return its description in ROS terms; None for nodes, and for endpoints outside ROS."""
         type_name = ros_type(self.type_name)
         if self.kind is None or type_name is None:
             return None
@@ -107,23 +107,23 @@ class Token:
 
 
 def data_key(domain_id: int, name: str, type_name: str, type_hash: str) -> str:
-    """The key of the data of a topic or service."""
+    """Return the key of the data of a topic or service."""
     return f"{domain_id}/{name.strip('/')}/{type_name}/{type_hash}"
 
 
 def of_node(domain_id: int, node: NodeIdentity) -> str:
-    """The key expression of the tokens that nodes of a name have."""
+    """Return the key expression that matches the tokens of nodes with a name."""
     return f"{ROOT}/{domain_id}/*/*/*/{_NODE}/*/{_chunk(node.namespace)}/{node.name}"
 
 
 def of_others(token: Token, kind: EndpointKind) -> str:
-    """The key expression of the tokens of endpoints of another kind at the same key."""
+    """Return the key expression that matches the tokens of endpoints of another kind at the same key."""
     about = (_chunk(token.name), _chunk(token.type_name), _chunk(token.type_hash))
     return "/".join((ROOT, str(token.domain_id), "*/*/*", _MARKS[kind], "*/*/*", *about, "**"))
 
 
 def read(key: str) -> Token | None:
-    """The token of a key expression; None when it is not written in ROS's way."""
+    """Parse a key expression into a token; return None if it does not have the form of a ROS token."""
     chunks = key.split("/")
     if len(chunks) < _NODE_CHUNKS or chunks[0] != ROOT or not chunks[1].isdecimal():
         return None
@@ -133,7 +133,7 @@ def read(key: str) -> Token | None:
         return Token(int(domain), session, node_id, entity_id, node)
     if mark not in KINDS or len(chunks) < _ENDPOINT_CHUNKS:
         return None
-    topic, type_name, type_hash, qos = chunks[_NODE_CHUNKS:_ENDPOINT_CHUNKS]  # newer distributions may add chunks
+    topic, type_name, type_hash, qos = chunks[_NODE_CHUNKS:_ENDPOINT_CHUNKS]  # newer distributions may append chunks
     if not _is_profile(qos):
         return None
     return Token(
@@ -143,7 +143,7 @@ def read(key: str) -> Token | None:
 
 @lru_cache(maxsize=1024)
 def _is_profile(text: str) -> bool:
-    """Whether a chunk is a profile; graphs have few of them for many endpoints."""
+    """Return whether a chunk is a profile; cached, because a graph has many endpoints but few different profiles."""
     try:
         qos_text.read(text)
     except ValueError:

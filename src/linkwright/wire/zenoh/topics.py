@@ -30,13 +30,13 @@ _MOST_KEPT = 1_000_000
 
 
 class OutgoingTopic:
-    """A publisher of this process, as subscriptions of others hear it.
+    """A publisher of this process, as subscriptions of other processes receive it.
 
     Args:
         publisher: the publisher.
         token: its token.
         session: the session.
-        changed: called, from any thread, when it is listened to or no longer is.
+        changed: called, from any thread, when it gains its first subscription or loses its last one.
     """
 
     def __init__(
@@ -67,25 +67,26 @@ class OutgoingTopic:
             )
         else:
             self._zenoh = session.declare_publisher(token.data_key, **options)
-            # Called by a thread of Zenoh: with its own handlers each would have a thread of Python's.
+            # Called by a thread of Zenoh. With Zenoh's own handlers, each listener would have a Python thread.
             self._listener = self._zenoh.declare_matching_listener(Callback(lambda _: changed(), indirect=False))
         self._send: Callable[[Any], None] | None = self._sender()
 
     def review(self, count: int) -> None:
-        """Send while a subscriber listens, or one may join late.
+        """Enable sending while there is a subscription, or one may join late.
 
         Args:
-            count: how many subscriptions outside are known.
+            count: the number of known remote subscriptions.
         """
         listened_to = self._keeps or self._zenoh.matching_status.matching
         self._publisher.set_outside(self._send if listened_to else None, _sent)
         self._publisher.set_outside_count(count if listened_to else 0)
 
     def close(self) -> None:
-        """Withdraw it.
+        """Withdraw the publisher.
 
-        One that keeps messages is let go, which withdraws it, too. Its `undeclare` waits with Python's lock held, 10 s
-        at most, for a thread of Zenoh that may itself be waiting for that lock in a callback.
+        A publisher that keeps messages is dropped without `undeclare`, which withdraws it too. Its `undeclare` would
+        hold the
+        GIL for up to 10 s while waiting for a thread of Zenoh that may itself be waiting for the GIL in a callback.
         """
         self.abandon()
         if self._listener is not None:
@@ -94,7 +95,7 @@ class OutgoingTopic:
         self._send, self._zenoh = None, None
 
     def abandon(self) -> None:
-        """Send nothing any more, without calling Zenoh."""
+        """Stop sending, without calling Zenoh."""
         self._publisher.outside = None
 
     def _sender(self) -> Callable[[Any], None]:
@@ -103,21 +104,21 @@ class OutgoingTopic:
 
         def send(message: Any) -> None:
             data = message if type(message) is bytes else _bytes_of(message)
-            with lock:  # in the order of their numbers: a gap counts as a loss
+            with lock:  # keeps messages in the order of their numbers: a gap counts as a loss
                 put(data, attachment=write(next(numbers), now(), gid))
 
         return send
 
 
 class IncomingTopic:
-    """A subscription of this process, as publishers of others reach it.
+    """A subscription of this process, as publishers of other processes reach it.
 
     Args:
         subscription: the subscription.
         token: its token.
         session: the session.
         key: the key to listen to; the token's own key, or an expression that includes it.
-        own: the gids of this session's publishers, which reach it inside the process.
+        own: the gids of this session's publishers, which deliver to it inside the process.
     """
 
     def __init__(
@@ -146,16 +147,16 @@ class IncomingTopic:
             self._zenoh = session.declare_subscriber(key, handler, allowed_origin=zenoh.Locality.REMOTE)
 
     def review(self, count: int) -> None:
-        """Note how many publishers outside are known."""
+        """Record the number of known remote publishers."""
         self._subscription.set_outside_count(count)
         self._subscription.set_outside_liveliness(count, 0)  # Zenoh does not report publishers that are not alive
 
     def close(self) -> None:
-        """Withdraw it."""
+        """Withdraw the subscription."""
         self._zenoh.undeclare()
 
     def _receive(self, sample: zenoh.Sample) -> None:
-        """Hand a sample on, in a thread of Zenoh."""
+        """Pass on a sample, in a thread of Zenoh."""
         enclosed = sample.attachment
         about = attachment.read(None if enclosed is None else enclosed.to_bytes())
         if about is None:
@@ -184,7 +185,7 @@ class IncomingTopic:
 
 
 def _sent(_seconds: float | None) -> bool:
-    """Nothing is acknowledged over Zenoh, whose links are reliable: a message given to it is on its way."""
+    """Return True: Zenoh has reliable connections and no acknowledgements, so a message passed to it counts as sent."""
     return True
 
 

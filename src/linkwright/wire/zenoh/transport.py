@@ -54,7 +54,7 @@ class ZenohTransport(BackgroundTransport):
         super().__init__(settings.domain_id, self._remote, self._departures, logger, **options)
 
     def look_around(self) -> None:
-        """Discover the graph outside: until then a client of a router hears only what its own endpoints need."""
+        """Discover the remote graph; until then, a client of a router receives only what its own endpoints need."""
         engine = self._zenoh_engine
         waits = engine is not None and self._decided.is_set() and not engine.runs_this
         with self._looking:
@@ -65,7 +65,7 @@ class ZenohTransport(BackgroundTransport):
             return
         answered = Event()
         self._do(lambda engine: cast("ZenohEngine", engine).look_around(_ANSWERED_WITHIN, answered.set))
-        if waits:  # otherwise the graph outside arrives as news
+        if waits:  # otherwise the remote graph arrives as it changes
             self._wait_for_answer(answered)
             self._do(self._note_news)
             self._looked.wait(_ANSWERED_WITHIN)
@@ -73,11 +73,11 @@ class ZenohTransport(BackgroundTransport):
 
     @property
     def waits(self) -> bool:
-        """Whether it waits for a router without which the session is not to be opened."""
+        """Whether opening the session waits for a router, because the settings require one."""
         return self._patience is not None and self._patience.waits
 
     def _wait_for_answer(self, answered: Event) -> None:
-        """Wait for the answer, and until no more of it comes, which now and then it does."""
+        """Wait for the answer, and until no further part of it arrives, because some parts may be late."""
         answered.wait(_ANSWERED_WITHIN)
         begin = time.monotonic()
         while time.monotonic() < min(begin + _ANSWERED_WITHIN, max(self._remote.changed_at, begin) + _QUIET):

@@ -1,5 +1,5 @@
-"""A participant of RTPS for services and clients alone, which speaks with Fast DDS.
+"""An RTPS participant only for services and clients, which communicates with Fast DDS.
 
-It depends on nothing but sockets. Its sources are the specification, DDSI-RTPS 2.5, and what Fast DDS sends;
-`docs/decisions/0067-fast-dds.md` explains why there is one.
+It depends only on sockets. It is based on the specification, DDSI-RTPS 2.5, and on the packets that Fast DDS sends.
+`docs/decisions/0067-fast-dds.md` explains why it exists.
 """

@@ -1,4 +1,4 @@
-"""The data by which participants and endpoints announce themselves (SPDP and SEDP; DDSI-RTPS 2.5, 8.5 and 9.6.2)."""
+"""The data with which participants and endpoints announce themselves (SPDP and SEDP; DDSI-RTPS 2.5, 8.5 and 9.6.2)."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ _USUAL_LEASE = 100.0
 
 @dataclass(frozen=True, slots=True)
 class ParticipantData:
-    """A participant.
+    """The announcement of a participant.
 
     Attributes:
-        prefix: of its GUIDs.
-        vendor: which implementation it is of.
+        prefix: the prefix of its GUIDs.
+        vendor: the vendor of its implementation.
         lease: seconds of silence after which it counts as gone.
-        discovery: the addresses of its discovery.
-        user: the addresses of its readers and writers that announce none of their own.
+        discovery: the addresses for discovery.
+        user: the addresses of its readers and writers that do not announce their own.
     """
 
     prefix: bytes
@@ -39,7 +39,7 @@ class ParticipantData:
 
 @dataclass(frozen=True, slots=True)
 class EndpointData:
-    """A reader or writer of another participant; `addresses` is empty where it listens where its participant does."""
+    """The announcement of a remote reader or writer; without `addresses`, it listens at those of its participant."""
 
     guid: bytes
     topic: str
@@ -49,7 +49,7 @@ class EndpointData:
 
 
 def describe_participant(prefix: bytes, name: str, lease: float, addresses: list[Address]) -> bytes:
-    """The SPDP sample of a participant of ours."""
+    """Return the SPDP sample that announces one of our participants."""
     return _LITTLE_ENDIAN_LIST + v.parameters(
         (v.PID_PROTOCOL_VERSION, v.VERSION),
         (v.PID_VENDOR, v.VENDOR),
@@ -63,7 +63,7 @@ def describe_participant(prefix: bytes, name: str, lease: float, addresses: list
 
 
 def describe_endpoint(guid: bytes, topic: str, type_name: str, facts: bytes) -> bytes:
-    """The SEDP sample of a reader or writer of ours: reliable and volatile, as services are."""
+    """Return the SEDP sample that announces one of our readers or writers: reliable and volatile, as for services."""
     return _LITTLE_ENDIAN_LIST + v.parameters(
         (v.PID_ENDPOINT_GUID, guid),
         (v.PID_PARTICIPANT_GUID, guid[: v.PREFIX] + v.PARTICIPANT),
@@ -79,16 +79,16 @@ def describe_endpoint(guid: bytes, topic: str, type_name: str, facts: bytes) -> 
 
 
 def key_of(guid: bytes, *, gone: bool = False) -> bytes:
-    """Inline QoS that names an endpoint, or announces that it is gone."""
+    """Return the inline QoS that identifies an endpoint, or announces that it is gone."""
     status = ((v.PID_STATUS_INFO, bytes((0, 0, 0, _GONE))),) if gone else ()
     return v.parameters((v.PID_KEY_HASH, guid), *status)
 
 
 def gone_guid(sample: Data) -> bytes:
-    """The GUID of the participant or endpoint whose end a sample announces; empty when it does not announce one.
+    """Return the GUID of the participant or endpoint that a sample announces as gone; empty if it announces none.
 
     Raises:
-        MalformedError: the sample names none.
+        MalformedError: the sample does not name one.
     """
     status = sample.inline.get(v.PID_STATUS_INFO)
     if not status or not status[0][3:4] or not status[0][3] & _GONE:
@@ -103,7 +103,7 @@ def gone_guid(sample: Data) -> bytes:
 
 
 def read_participant(payload: bytes) -> ParticipantData:
-    """A participant out of its SPDP sample.
+    """Parse the SPDP sample of a participant.
 
     Raises:
         MalformedError: a required value is missing.
@@ -123,7 +123,7 @@ def read_participant(payload: bytes) -> ParticipantData:
 
 
 def read_endpoint(payload: bytes, *, is_writer: bool) -> EndpointData:
-    """A reader or writer out of its SEDP sample.
+    """Parse the SEDP sample of a reader or writer.
 
     Raises:
         MalformedError: a required value is missing.

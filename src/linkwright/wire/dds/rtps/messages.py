@@ -1,4 +1,4 @@
-"""Messages of RTPS as bytes: those that come, as far as they are understood, and those that go (DDSI-RTPS 2.5, 9.4)."""
+"""Parse incoming RTPS messages, as far as they are supported, and build outgoing ones (DDSI-RTPS 2.5, 9.4)."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ class Data:
     """A sample, or a fragment of one.
 
     Attributes:
-        source: the prefix of its participant.
+        source: the GUID prefix of its participant.
         reader: the entity that it is for; `UNKNOWN` for all that match.
         writer: the GUID of its writer.
         number: its sequence number.
-        order: ``<`` or ``>``, of `inline`.
+        order: the byte order of `inline`, ``<`` or ``>``.
         inline: the inline QoS.
-        payload: serialized; None where there is nothing but a key.
-        time: when it was written, in ns since the epoch; 0 where that is not known.
-        first: for fragments, the number of the first, from 1; 0 of a whole sample.
+        payload: the serialized payload; None if there is only a key.
+        time: when it was written, in ns since the epoch; 0 if that is not known.
+        first: for fragments, the number of the first one, from 1; 0 for a whole sample.
         fragment: for fragments, the size of each.
-        size: for fragments, that of the sample.
+        size: for fragments, the size of the sample.
     """
 
     source: bytes
@@ -61,7 +61,7 @@ class Data:
 
 @dataclass(frozen=True, slots=True)
 class Heartbeat:
-    """HEARTBEAT: a writer has the samples from `first` to `last`; `first` is one more than `last` when it has none."""
+    """HEARTBEAT: a writer has the samples from `first` to `last`; without samples, `first` is `last` plus one."""
 
     source: bytes
     reader: bytes
@@ -73,7 +73,7 @@ class Heartbeat:
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """GAP: the samples from `start` to before `base`, and `others`, are not for a reader, or no longer there."""
+    """GAP: the samples from `start` to before `base`, and `others`, are not for a reader or are no longer available."""
 
     source: bytes
     reader: bytes
@@ -85,7 +85,7 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class AckNack:
-    """ACKNACK: a reader has every sample before `base`; of the later ones it lacks `missing`."""
+    """ACKNACK: a reader has every sample before `base`; of the later samples it lacks `missing`."""
 
     source: bytes
     reader: bytes
@@ -118,12 +118,12 @@ class _Context:
 
 
 def vendor_of(packet: bytes) -> bytes:
-    """Which implementation sent a message; empty when it is none."""
+    """Return the vendor that sent a message; empty if the packet is not an RTPS message."""
     return packet[6:8] if packet[:4] == b"RTPS" and len(packet) >= _HEADER else b""
 
 
 def parse(packet: bytes, own_prefix: bytes) -> Iterator[Submessage]:
-    """The submessages of a message for a participant, up to the first malformed one."""
+    """Yield the submessages that are for a participant, up to the first malformed one."""
     if not vendor_of(packet):
         return
     context = _Context(packet[8:_HEADER], own=own_prefix)
@@ -209,50 +209,50 @@ def _bits(body: bytes, offset: int, base: int, count: int, order: str) -> list[i
     return [base + bit for bit in range(count) if words[bit // 32] >> (31 - bit % 32) & 1]
 
 
-# --- making them -----------------------------------------------------------------------------------------------------
+# --- building messages -----------------------------------------------------------------------------------------------
 
 
 def message(prefix: bytes, *submessages: bytes, to: bytes = b"") -> bytes:
-    """A message of a participant, for the one with the prefix `to` or for all."""
+    """Build a message from a participant, to the participant with the prefix `to` or to all."""
     destination = _submessage(_INFO_DST, 0, to) if to else b""
     return b"RTPS" + VERSION + VENDOR + prefix + destination + b"".join(submessages)
 
 
 def info_timestamp(nanoseconds: int) -> bytes:
-    """INFO_TS: when the following submessages were written."""
+    """Build INFO_TS, which gives the time at which the following submessages were written."""
     seconds, rest = divmod(nanoseconds, NANOSECONDS_PER_SECOND)
     return _submessage(_INFO_TS, 0, struct.pack("<II", seconds, (rest << 32) // NANOSECONDS_PER_SECOND))
 
 
 def data(reader: bytes, writer: bytes, number: int, payload: bytes | None, inline: bytes = b"") -> bytes:
-    """DATA; without a payload, DATA with the key in `inline` alone."""
+    """Build DATA; without a payload, DATA contains only the key in `inline`."""
     flags = (_INLINE if inline else 0) | (0 if payload is None else _HAS_DATA)
     head = struct.pack("<HH", 0, 16) + reader + writer + _pack(number)
     return _submessage(_DATA, flags, head + inline + (payload or b""))
 
 
 def fragments_of(payload: bytes) -> int:
-    """Into how many fragments a payload is divided."""
+    """Return the number of fragments that a payload is divided into."""
     return (len(payload) + FRAGMENT - 1) // FRAGMENT
 
 
 def data_fragment(reader: bytes, writer: bytes, number: int, payload: bytes, which: int, inline: bytes = b"") -> bytes:
-    """DATA_FRAG with one fragment of a payload, counted from 1."""
+    """Build DATA_FRAG with one fragment of a payload; fragments are counted from 1."""
     head = _fragment_head(reader, writer, number, len(payload), which)
     part = payload[(which - 1) * FRAGMENT : which * FRAGMENT]
     return _submessage(_DATA_FRAG, _INLINE if inline else 0, head + inline + part)
 
 
 def fragment_start(reader: bytes, writer: bytes, number: int, size: int, which: int, length: int) -> bytes:
-    """The beginning of DATA_FRAG, before the bytes of the fragment, which end the message.
+    """Build the beginning of DATA_FRAG, up to the bytes of the fragment, which end the message.
 
     Args:
         reader: the entity that it is for.
         writer: the entity that wrote the payload.
         number: the sequence number.
-        size: the bytes of the payload.
-        which: which fragment, counted from 1.
-        length: its bytes, a multiple of four.
+        size: the size of the payload in bytes.
+        which: the number of the fragment, counted from 1.
+        length: the length of the fragment in bytes, a multiple of four.
     """
     head = _fragment_head(reader, writer, number, size, which)
     return struct.pack("<BBH", _DATA_FRAG, _LITTLE, len(head) + length) + head
@@ -264,20 +264,20 @@ def _fragment_head(reader: bytes, writer: bytes, number: int, size: int, which: 
 
 
 def heartbeat(reader: bytes, writer: bytes, first: int, last: int, count: int, *, final: bool = False) -> bytes:
-    """HEARTBEAT."""
+    """Build HEARTBEAT."""
     body = reader + writer + _pack(first) + _pack(last) + struct.pack("<I", count)
     return _submessage(_HEARTBEAT, _FINAL if final else 0, body)
 
 
 def gap(reader: bytes, writer: bytes, start: int, base: int) -> bytes:
-    """GAP over everything from `start` to before `base`."""
+    """Build GAP for all samples from `start` to before `base`."""
     return _submessage(_GAP, 0, reader + writer + _pack(start) + _pack(base) + struct.pack("<I", 0))
 
 
 def acknack(
     reader: bytes, writer: bytes, base: int, missing: Collection[int], count: int, *, final: bool = True
 ) -> bytes:
-    """ACKNACK: every sample before `base` has arrived; the missing ones from there on, at most 256 further."""
+    """Build ACKNACK: every sample before `base` has arrived; `missing` lists missing samples, up to 256 from there."""
     size = max(missing) - base + 1 if missing else 0
     words = [0] * ((size + 31) // 32)
     for number in missing:

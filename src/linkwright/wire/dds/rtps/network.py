@@ -1,4 +1,4 @@
-"""The UDP sockets of a participant, and the addresses at which it looks for others."""
+"""The UDP sockets of a participant, and the addresses at which it looks for other participants."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ _NETWORK_TTL = 32
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """The addresses of a participant, and those at which it looks for others.
+    """The addresses of a participant, and the addresses at which it looks for others.
 
     Attributes:
         own: its addresses, without ports.
-        ports: at these ports others may listen.
-        hosts: at these addresses, by unicast.
-        interfaces: the addresses of the interfaces that multicast leaves through.
-        ttl: how far multicast goes; 0 for this machine.
-        only_here: whether nothing from another machine is listened to.
+        ports: the ports at which others may listen.
+        hosts: the unicast addresses of others.
+        interfaces: the addresses of the interfaces that multicast is sent through.
+        ttl: the time to live of multicast packets; 0 for this machine only.
+        only_here: whether packets from other machines are ignored.
     """
 
     own: tuple[str, ...]
@@ -50,7 +50,7 @@ class Places:
 
 
 def places_of(settings: Settings) -> Places:
-    """Where to look with these settings; see `docs/decisions/0011-dds.md`."""
+    """Return where to look for participants with the given settings; see `docs/decisions/0011-dds.md`."""
     others = tuple(own_addresses()[:3])
     local = settings.range is Range.LOCALHOST and bool(settings.peers)
     machine = settings.range is Range.MACHINE or (settings.range is Range.LOCALHOST and not local)
@@ -76,10 +76,10 @@ def _resolved(peers: Iterable[str]) -> list[str]:
 
 
 class Network:
-    """The socket.
+    """The UDP socket of a participant.
 
     Args:
-        settings: the domain and how far to look.
+        settings: the domain and the discovery range.
 
     Raises:
         OSError: no socket is available.
@@ -107,19 +107,19 @@ class Network:
         self.addresses: list[Address] = [(host, port) for host in self._places.own]
 
     def receive(self) -> tuple[bytes, Address] | None:
-        """The next message, and its sender; None when there is no more."""
+        """Return the next message and its sender; None if there is none."""
         while True:
             try:
                 packet, source = self.socket.recvfrom(_LARGEST)
             except BlockingIOError:
                 return None
             except OSError:
-                continue  # a process that we sent to does not listen any more (Windows reports that here)
+                continue  # a process that we sent to no longer listens (Windows reports that here)
             if not self._places.only_here or self.is_here(source[0]):
                 return packet, source
 
     def send(self, packets: Iterable[Packet]) -> None:
-        """Send messages; packets that the system does not take are lost, and readers that lack them ask again."""
+        """Send messages; packets that the system does not accept are lost, and readers request them again."""
         burst = 0
         for packet, addresses in packets:
             burst += len(packet)
@@ -139,7 +139,7 @@ class Network:
                 self.socket.sendto(packet, self._group)
 
     def best_of(self, addresses: Iterable[Address]) -> tuple[Address, ...]:
-        """The address to send to for a receiver at some addresses: one of this machine is enough."""
+        """Return the addresses to send to for a receiver: one on this machine if there is one, otherwise all."""
         known = tuple(dict.fromkeys(addresses))
         here = sorted(
             (address for address in known if self.is_here(address[0])), key=lambda address: address[0] != _LOOPBACK
@@ -153,5 +153,5 @@ class Network:
         self.socket.close()
 
     def is_here(self, host: str) -> bool:
-        """Whether an address is one of this machine."""
+        """Return whether an address belongs to this machine."""
         return host in self._here or host.startswith("127.")

@@ -1,7 +1,7 @@
-"""A participant of RTPS that has readers and writers of services for the participants of Fast DDS.
+"""An RTPS participant with readers and writers of services for the participants of Fast DDS.
 
-It speaks with these alone: other participants learn that it exists, because the address of a participant of Fast DDS is
-not known before it has answered, but no endpoints are announced to them.
+It communicates with Fast DDS only. Other participants learn that it exists, because the address of a Fast DDS
+participant is not known before it has answered, but no endpoints are announced to them.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class _Peer:
 
 @dataclass(eq=False, slots=True)
 class LocalReader:
-    """A reader of ours; made by `RtpsParticipant.add_reader`."""
+    """One of our readers, created by `RtpsParticipant.add_reader`."""
 
     reader: Reader
     topic: str
@@ -81,7 +81,7 @@ class LocalReader:
 
 @dataclass(eq=False, slots=True)
 class LocalWriter:
-    """A writer of ours; made by `RtpsParticipant.add_writer`."""
+    """One of our writers, created by `RtpsParticipant.add_writer`."""
 
     writer: Writer
     topic: str
@@ -90,15 +90,16 @@ class LocalWriter:
 
 
 class RtpsParticipant:
-    """A participant with its socket and its thread.
+    """An RTPS participant with its socket and thread.
 
     Args:
-        settings: the domain and how far to look.
+        settings: the domain and the discovery range.
         name: its own name.
-        changed: called in its thread, or in that of the caller, when a reader or writer was matched, heard or left.
+        changed: called in its thread, or in the caller's thread, when a reader or writer was matched, was heard or
+            left.
 
     Raises:
-        OSError: there is no socket to be had.
+        OSError: no socket is available.
     """
 
     def __init__(self, settings: Settings, name: str, changed: Callable[[], None]) -> None:
@@ -130,10 +131,10 @@ class RtpsParticipant:
         self._thread = threading.Thread(target=self._run, name="linkwright-rtps", daemon=True)
         self._thread.start()
 
-    # --- asked by services and clients -------------------------------------------------------------------------------
+    # --- called by services and clients ------------------------------------------------------------------------------
 
     def add_reader(self, topic: str, type_name: str, facts: bytes, on_data: Callable[[Data], None]) -> LocalReader:
-        """A reader.
+        """Create a reader.
 
         Args:
             topic: the DDS topic.
@@ -151,7 +152,7 @@ class RtpsParticipant:
         return local
 
     def add_writer(self, topic: str, type_name: str, facts: bytes) -> LocalWriter:
-        """A writer; for the arguments see `add_reader`."""
+        """Create a writer; see `add_reader` for the arguments."""
         with self._lock:
             guid = self._new_guid(v.WRITER_KIND)
             packets = self._publications.write(describe_endpoint(guid, topic, type_name, facts), inline=key_of(guid))
@@ -178,7 +179,7 @@ class RtpsParticipant:
         """Write a sample; see `Writer.write` for the arguments.
 
         Returns:
-            Its sequence number.
+            The sequence number of the sample.
         """
         with self._lock:
             packets = local.writer.write(payload, inline=inline, to=to)
@@ -188,17 +189,20 @@ class RtpsParticipant:
         return number
 
     def matched_readers(self, local: LocalWriter) -> list[bytes]:
-        """The GUIDs of the readers of other participants that a writer of ours writes for."""
+        """Return the GUIDs of the remote readers that one of our writers writes to."""
         with self._lock:
             return list(local.writer.readers)
 
     def matched_writers(self, local: LocalReader) -> dict[bytes, float | None]:
-        """The GUIDs of the writers that a reader of ours hears, and when each was first heard, by the steady clock."""
+        """Return the GUIDs of the writers matched with one of our readers, and when each was first heard.
+
+        The times are by the steady clock; None for a writer that has not been heard yet.
+        """
         with self._lock:
             return {guid: local.reader.heard_at(guid) for guid in local.reader.writers}
 
     def address_of(self, reader: bytes) -> Address | None:
-        """Where a reader of another participant listens on this machine; None where that is not known."""
+        """Return the address of a remote reader on this machine; None if it is not known."""
         with self._lock:
             peer = self._peers.get(reader[: v.PREFIX])
             endpoint = peer.endpoints.get(reader) if peer is not None else None
@@ -208,12 +212,12 @@ class RtpsParticipant:
         return next((address for address in addresses if self._network.is_here(address[0])), None)
 
     def last_of(self, local: LocalReader, writer: bytes) -> int:
-        """The highest sequence number that a writer has announced to a reader of ours."""
+        """Return the highest sequence number that a writer has announced to one of our readers."""
         with self._lock:
             return local.reader.last_of(writer)
 
     def expect(self, prefixes: Iterable[bytes]) -> None:
-        """Look for participants that others have announced, until each has answered."""
+        """Look for participants that were discovered elsewhere until each has answered."""
         with self._lock:
             expected = frozenset(prefixes)
             if expected - self._expected:
@@ -222,7 +226,7 @@ class RtpsParticipant:
         self._ring()
 
     def close(self) -> None:
-        """Announce the departure, and end."""
+        """Announce the departure and end the thread."""
         self._closing = True
         self._ring()
         if threading.current_thread() is not self._thread:
@@ -262,7 +266,7 @@ class RtpsParticipant:
         self._network.send(packets)
 
     def _due(self) -> float:
-        """Do the work that is due; seconds until the next."""
+        """Do the work that is due; return the seconds until the next work."""
         now = time.monotonic()
         packets: list[Packet] = []
         with self._lock:
@@ -405,7 +409,10 @@ class RtpsParticipant:
     # --- incoming packets ---------------------------------------------------------------------------------------------
 
     def _understand(self, packet: bytes, source: Address, calls: list[Callable[[], None]]) -> list[Packet]:
-        """The packets that answer one; callbacks to be made without the lock are appended to `calls`."""
+        """Process a packet; return the packets that answer it.
+
+        Callbacks that must be called without holding the lock are appended to `calls`.
+        """
         packets: list[Packet] = []
         vendor = vendor_of(packet)
         for submessage in parse(packet, self.prefix):
@@ -426,7 +433,8 @@ class RtpsParticipant:
         return packets
 
     def _on_stranger(self, submessage: Submessage, source: Address) -> list[Packet]:
-        """Answer a participant that is not matched, so that it does not repeat itself: neither side lacks anything."""
+        """Answer a participant that is not matched that neither side lacks anything, so that it stops repeating itself.
+        """
         self._count += 1
         if isinstance(submessage, AckNack) and submessage.writer in (v.PUBLICATIONS_WRITER, v.SUBSCRIPTIONS_WRITER):
             answer = heartbeat(submessage.reader[v.PREFIX :], submessage.writer, 1, 0, self._count, final=True)
@@ -491,7 +499,7 @@ class RtpsParticipant:
                     calls.append(partial(local.on_data, complete))
 
     def _replay(self, calls: list[Callable[[], None]]) -> None:
-        """Hand on the samples that came before their writer was known."""
+        """Pass on the samples that arrived before their writer was known."""
         early, self._early = self._early, []
         for sample in early:
             peer = self._peers.get(sample.source)

@@ -1,6 +1,6 @@
-"""Readers of RTPS that ask for what they lack (DDSI-RTPS 2.5, 8.4.12).
+"""RTPS readers that request missing samples (DDSI-RTPS 2.5, 8.4.12).
 
-A sample is handed on when it arrives, though an earlier one may still be on its way: requests and responses need no
+A sample is passed on when it arrives, even if an earlier one is still missing: requests and responses do not need an
 order, and no call waits for another one.
 """
 
@@ -27,14 +27,14 @@ _MOST_INCOMPLETE = 8
 
 @dataclass(slots=True)
 class _Incomplete:
-    """A sample of which not all fragments are here."""
+    """A sample whose fragments have not all arrived."""
 
     size: int
     fragment: int
     parts: dict[int, bytes] = field(default_factory=dict)
 
     def add(self, first: int, payload: bytes) -> bytes | None:
-        """Take fragments from the one with number `first` on; the sample when it is complete."""
+        """Add consecutive fragments, starting with number `first`; return the sample once it is complete."""
         count = (self.size + self.fragment - 1) // self.fragment
         for start in range(0, len(payload), self.fragment):
             number = first + start // self.fragment
@@ -84,7 +84,7 @@ class _Writer:
 
 
 class Reader:
-    """A reader.
+    """An RTPS reader.
 
     Args:
         guid: 16 bytes.
@@ -96,21 +96,24 @@ class Reader:
 
     @property
     def writers(self) -> Iterable[bytes]:
-        """The GUIDs of the writers that it hears."""
+        """The GUIDs of the matched writers."""
         return self._writers.keys()
 
     def heard_at(self, writer: bytes) -> float | None:
-        """When the first heartbeat of a writer arrived, by the steady clock: it has matched this reader."""
+        """Return when the first heartbeat of a writer arrived, by the steady clock.
+
+        From then on, the writer has matched this reader.
+        """
         matched = self._writers.get(writer)
         return matched.heard_at if matched is not None else None
 
     def last_of(self, writer: bytes) -> int:
-        """The highest number that a writer has announced."""
+        """Return the highest sequence number that a writer has announced."""
         matched = self._writers.get(writer)
         return matched.last if matched is not None else 0
 
     def match(self, writer: bytes, addresses: tuple[Address, ...]) -> list[Packet]:
-        """Match a writer; returns the packets that ask it for its samples."""
+        """Match a writer; return the packets that request its samples."""
         if writer in self._writers:
             self._writers[writer].addresses = addresses
             return []
@@ -122,7 +125,7 @@ class Reader:
         self._writers.pop(writer, None)
 
     def on_data(self, sample: Data) -> Data | None:
-        """A sample that is new and complete, else None."""
+        """Return a sample that is new and complete, otherwise None."""
         matched = self._writers.get(sample.writer)
         if matched is None or matched.has(sample.number) or sample.number > max(matched.low, matched.last) + _FURTHEST:
             return None
@@ -136,7 +139,7 @@ class Reader:
         return complete
 
     def on_heartbeat(self, heartbeat: Heartbeat) -> list[Packet]:
-        """The acknowledgement, with the numbers of missing samples."""
+        """Return the acknowledgement of a heartbeat, with the numbers of missing samples."""
         matched = self._writers.get(heartbeat.writer)
         if matched is None:
             return []
@@ -163,12 +166,12 @@ class Reader:
                 matched.add(number)
 
     def remind(self, now: float) -> list[Packet]:
-        """The packets that ask silent writers again, where it is time."""
+        """Return packets that repeat the request to silent writers, if it is time to do so."""
         silent = [item for item in self._writers.items() if item[1].heard_at is None and now >= item[1].due]
         return [self._ask(writer, matched, now) for writer, matched in silent]
 
     def next_reminder(self) -> float | None:
-        """When `remind` is to be called; None while all have been heard."""
+        """Return when to call `remind` next; None if all writers have been heard."""
         return min((matched.due for matched in self._writers.values() if matched.heard_at is None), default=None)
 
     @staticmethod
@@ -183,7 +186,10 @@ class Reader:
         return part.add(sample.first, sample.payload)
 
     def _ask(self, writer: bytes, matched: _Writer, now: float) -> Packet:
-        """An acknowledgement of nothing, base 0, which Fast DDS answers with a heartbeat; not one with base 1."""
+        """Return an acknowledgement of nothing, with base 0.
+
+        Fast DDS answers base 0, but not base 1, with a heartbeat.
+        """
         matched.due, matched.repeat = now + matched.repeat, min(matched.repeat * 2, _LAST_REPEAT)
         return self._acknack(writer, matched, 0, [], final=False)
 

@@ -66,25 +66,28 @@ Parameters = dict[int, list[bytes]]
 
 
 class MalformedError(ValueError):
-    """A packet does not follow the RTPS specification."""
+    """Raised when a packet does not follow the RTPS specification."""
 
 
 def parameter(pid: int, value: bytes) -> bytes:
-    """A parameter, filled up to a multiple of four bytes."""
+    """Encode a parameter, padded to a multiple of four bytes."""
     value += bytes(-len(value) % 4)
     return struct.pack("<HH", pid, len(value)) + value
 
 
 def parameters(*pairs: tuple[int, bytes]) -> bytes:
-    """A list of parameters with its end."""
+    """Encode a list of parameters, including its end."""
     return b"".join(parameter(*pair) for pair in pairs) + struct.pack("<HH", _PID_SENTINEL, 0)
 
 
 def read_parameters(data: bytes, offset: int, order: str) -> tuple[Parameters, int]:
-    """The parameters that begin at an offset, each with all its values, and where the list ends.
+    """Parse the list of parameters at an offset.
+
+    Returns:
+        The parameters, each with all its values, and the offset of the end of the list.
 
     Raises:
-        MalformedError: it has no end.
+        MalformedError: the list has no end.
     """
     found: Parameters = {}
     while offset + 4 <= len(data):
@@ -100,21 +103,21 @@ def read_parameters(data: bytes, offset: int, order: str) -> tuple[Parameters, i
 
 
 def text(value: str) -> bytes:
-    """A string as CDR."""
+    """Encode a string as CDR."""
     encoded = value.encode() + b"\0"
     return struct.pack("<I", len(encoded)) + encoded
 
 
 def octets(value: bytes) -> bytes:
-    """A sequence of octets as CDR."""
+    """Encode a sequence of octets as CDR."""
     return struct.pack("<I", len(value)) + value
 
 
 def read_text(value: bytes, order: str) -> str:
-    """A string of CDR.
+    """Decode a CDR string.
 
     Raises:
-        MalformedError: it is cut short.
+        MalformedError: the string is truncated.
     """
     if len(value) < 4:
         raise MalformedError("a string without its length")
@@ -125,12 +128,12 @@ def read_text(value: bytes, order: str) -> str:
 
 
 def locator(address: Address) -> bytes:
-    """A locator of UDPv4."""
+    """Encode a UDPv4 locator."""
     return _LOCATOR.pack(_UDP_V4, address[1]) + bytes(12) + socket.inet_aton(address[0])
 
 
 def read_locators(values: list[bytes], order: str) -> list[Address]:
-    """The addresses over UDPv4; Fast DDS announces shared memory too."""
+    """Return the UDPv4 addresses among locators; Fast DDS announces shared memory too."""
     found = []
     for value in values:
         if len(value) >= 24:
@@ -141,13 +144,16 @@ def read_locators(values: list[bytes], order: str) -> list[Address]:
 
 
 def related_identity(guid: bytes, number: int) -> bytes:
-    """Inline QoS with the sample of a writer (or reader) that another sample belongs to, for all Fast DDS."""
+    """Return inline QoS that identifies the related sample by the GUID of its writer (or reader) and its number.
+
+    It is written in the forms that all versions of Fast DDS understand.
+    """
     value = guid + _IDENTITY.pack(number >> 32, number & 0xFFFF_FFFF)
     return parameters((PID_RELATED_SAMPLE_IDENTITY, value), (PID_RELATED_SAMPLE_IDENTITY_OF_FAST_DDS, value))
 
 
 def read_related_identity(inline: Parameters, order: str) -> tuple[bytes, int] | None:
-    """GUID and sequence number out of inline QoS; None where it has neither."""
+    """Return the GUID and the sequence number of the related sample in inline QoS; None if there is none."""
     for pid in (PID_RELATED_SAMPLE_IDENTITY, PID_RELATED_SAMPLE_IDENTITY_OF_FAST_DDS):
         for value in inline.get(pid, ()):
             if len(value) >= 24:
@@ -157,5 +163,5 @@ def read_related_identity(inline: Parameters, order: str) -> tuple[bytes, int] |
 
 
 def is_reader(guid: bytes) -> bool:
-    """Whether a GUID is that of a reader (9.3.1.2)."""
+    """Return whether a GUID belongs to a reader (9.3.1.2)."""
     return bool(guid[15] & 0x04)

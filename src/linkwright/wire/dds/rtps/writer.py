@@ -1,4 +1,4 @@
-"""Writers of RTPS that see to it that every reader gets everything (DDSI-RTPS 2.5, 8.4.9)."""
+"""RTPS writers that ensure that every reader receives every sample (DDSI-RTPS 2.5, 8.4.9)."""
 
 from __future__ import annotations
 
@@ -53,11 +53,11 @@ class _Reader:
 
 
 class Writer:
-    """A writer.
+    """An RTPS writer.
 
     Args:
         guid: 16 bytes.
-        lasting: whether readers that come later get the earlier samples.
+        lasting: whether late-joining readers receive earlier samples.
     """
 
     def __init__(self, guid: bytes, *, lasting: bool = False) -> None:
@@ -71,16 +71,17 @@ class Writer:
 
     @property
     def readers(self) -> Iterable[bytes]:
-        """The GUIDs of the readers that it writes for."""
+        """The GUIDs of the matched readers."""
         return self._readers.keys()
 
     def has_heard(self, reader: bytes) -> bool:
-        """Whether a reader has answered, and so has matched this writer."""
+        """Return whether a reader has answered, which shows that it has matched this writer."""
         matched = self._readers.get(reader)
         return matched is not None and matched.heard
 
     def match(self, reader: bytes, addresses: tuple[Address, ...]) -> list[Packet]:
-        """Match a reader; returns the first packets for it: the history if this writer keeps it, else a heartbeat."""
+        """Match a reader; return the first packets for it: the history if this writer keeps it, otherwise a heartbeat.
+        """
         if reader in self._readers:
             self._readers[reader].addresses = addresses
             return []
@@ -90,7 +91,7 @@ class Writer:
         return self._everything(reader, matched)
 
     def unmatch(self, reader: bytes) -> None:
-        """Write no longer for a reader."""
+        """Stop writing to a reader."""
         self._readers.pop(reader, None)
         self._forget_acknowledged()
 
@@ -98,9 +99,9 @@ class Writer:
         """Write a new sample.
 
         Args:
-            payload: serialized; None for the end of the entity whose key is in `inline`.
+            payload: the serialized payload; None to announce the end of the entity whose key is in `inline`.
             inline: the inline QoS.
-            to: how the GUIDs of its readers begin; the others are notified that it is not for them.
+            to: the GUID prefix of the readers that it is for; other readers are notified that it is not for them.
 
         Returns:
             The packets to send.
@@ -118,16 +119,16 @@ class Writer:
         return packets
 
     def withdraw(self, number: int) -> None:
-        """Drop a sample from the history for late joiners."""
+        """Remove a sample from the history for late-joining readers."""
         self._drop(number)
 
     @property
     def last(self) -> int:
-        """The number of the newest sample."""
+        """The sequence number of the newest sample."""
         return self._last
 
     def on_acknack(self, acknack: AckNack) -> list[Packet]:
-        """Handle an ACKNACK; returns the packets that repeat the samples that the reader lacks."""
+        """Handle an ACKNACK; return the packets that repeat the missing samples."""
         matched = self._readers.get(acknack.reader)
         if matched is None:
             return []
@@ -143,7 +144,7 @@ class Writer:
         return packets
 
     def on_nack_frag(self, nack: NackFrag) -> list[Packet]:
-        """The fragments that a reader lacks."""
+        """Handle a NACK_FRAG; return the packets that repeat the missing fragments."""
         matched, change = self._readers.get(nack.reader), self._changes.get(nack.number)
         if matched is None or change is None or change.payload is None or not change.is_for(nack.reader):
             return []
@@ -156,7 +157,7 @@ class Writer:
         return [*packets, self._packet(nack.reader, matched, self._beat(nack.reader, matched))]
 
     def remind(self, now: float) -> list[Packet]:
-        """Heartbeats for the readers that have not acknowledged for some time."""
+        """Return heartbeats for the readers that have not acknowledged for some time."""
         packets = []
         for reader, matched in self._readers.items():
             if matched.base <= self._last and now >= matched.due:
@@ -166,7 +167,7 @@ class Writer:
         return packets
 
     def next_reminder(self) -> float | None:
-        """When `remind` is to be called; None while everything was acknowledged."""
+        """Return when to call `remind` next; None if everything has been acknowledged."""
         return min((matched.due for matched in self._readers.values() if matched.base <= self._last), default=None)
 
     # --- inside ------------------------------------------------------------------------------------------------------
