@@ -166,10 +166,8 @@ class _Track:
         """Replace an equal earlier message, if there is one; return the additional bytes, or None.
 
         The first message of a run is kept, and so is the time of the second, which is always the newest. A reader
-        between the
-        two gets the state at that time, with a stamp that is not too old. For a clock, the second message has the
-        newest time
-        too: the clock ran evenly between the two, see `clock_at`.
+        between the two gets the state at that time, with a stamp that is not too old. For a clock, the second message
+        has the newest time too: the clock ran evenly between the two, see `clock_at`.
         """
         run = self._runs.get(content.what)
         if run is None or not run.content.is_repeated_by(content) or stamp_ns - run.since_ns >= _STILL_NS:
@@ -349,8 +347,9 @@ class History:
         self._shrinker.close()
 
     def _as_time_passes(self, content: Content, clock_ns: int) -> Content:
-        """Return the content of a clock message; it counts as repeated while no other message arrives and time is not
-        reset.
+        """Return the content of a clock message.
+
+        It counts as repeated while no other message arrives and time is not reset.
         """
         if clock_ns < self._clock_ns:
             self._changes += 1
@@ -405,12 +404,16 @@ class History:
         return max(self._newest_ns, self._now_ns())
 
     def messages(self, topics: Collection[str], start_ns: int) -> Iterator[Recorded]:
-        """Yield the messages of topics from a time on; after its end, the iterator continues when new messages arrive.
+        """Yield the messages of topics from a time on.
+
+        After its end, the iterator continues when new messages arrive.
         """
         return _Onward(self, topics, start_ns)
 
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
-        """Return the last message of each topic up to a time; for ``/tf`` those of two seconds, for ``/tf_static`` all.
+        """Return the last message of each topic up to a time.
+
+        For ``/tf`` they are those of two seconds, and for ``/tf_static`` all.
         """
         static: list[Recorded] = []
         found: list[Recorded] = []
@@ -434,8 +437,9 @@ class History:
         return static + sorted(found, key=lambda item: item[1])
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
-        """Return when the last message before a time was received, in nanoseconds since the epoch; None if there is
-        none.
+        """Return when the last message before a time was received, in nanoseconds since the epoch.
+
+        None if there is none.
         """
         with self.lock:
             last = [self._tracks[name].until(at_ns - 1, 1) for name in topics if name in self._tracks]
@@ -445,10 +449,8 @@ class History:
         """Return the messages from one time to another, inclusive, in the order of their times.
 
         The messages needed to show the state at the beginning come first (see `state_at`), stamped with that time. The
-        states
-        that are still unchanged at the end follow. Messages stay compressed, because many uncompressed messages
-        together would
-        be too large, see `whole`.
+        states that are still unchanged at the end follow. Messages stay compressed, because many uncompressed messages
+        together would be too large, see `whole`.
         """
         with self.lock:
             before = self.state_at(list(self._tracks), start_ns - 1)

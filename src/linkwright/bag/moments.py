@@ -39,8 +39,7 @@ class Moments:
         """Return the last message of each topic up to a time; for ``/tf`` those of two seconds, for ``/tf_static`` all.
 
         If ``/tf`` paused for longer, they are the messages of the two seconds before the pause. Topics with these names
-        in a
-        namespace are treated in the same way.
+        in a namespace are treated in the same way.
 
         Args:
             topics: the topics.
@@ -63,18 +62,19 @@ class Moments:
         return found + sorted(moving, key=lambda item: item[1])
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
-        """Return when the last message before a time was received, in nanoseconds since the epoch; None if there is
-        none.
+        """Return when the last message before a time was received, in nanoseconds since the epoch.
+
+        None if there is none.
         """
         return max((stamp for _, stamp, _ in self._latest(topics, at_ns - 1)), default=None)
 
     def counts(self, parts: int) -> dict[str, list[int]]:
-        """Return the number of messages of each topic in equal parts of the recording; empty for a file without an
-        index.
+        """Return the number of messages of each topic in equal parts of the recording.
+
+        Empty for a file without an index.
 
         In a long recording, the messages of a chunk, or of a short time, are counted as if they were evenly distributed
-        over
-        it.
+        over it.
         """
         start, duration = self._reader.start_time, max(1, self._reader.duration)
 

@@ -140,8 +140,7 @@ class Playback:
         """Jump to another time once the event loop is free; of several pending seeks, only the newest counts.
 
         The new time is published immediately, and subscribers drop their state when the clock goes back. Therefore the
-        messages
-        of the new state follow one iteration of the loop later.
+        messages of the new state follow one iteration of the loop later.
         """
         pending = self._target_ns is not None
         self._target_ns = min(self.end_ns, max(self.start_ns, stamp_ns))
@@ -189,7 +188,9 @@ class Playback:
         self._open_stream()
 
     def before(self, topics: Collection[str], length_ns: int, most_bytes: int) -> list[Recorded]:
-        """Return the messages of topics in the given duration before the current time; empty if they exceed some bytes.
+        """Return the messages of topics in the given duration before the current time.
+
+        The result is empty if they exceed some bytes.
         """
         found: list[Recorded] = []
         size = 0
@@ -225,7 +226,6 @@ class Playback:
         self._stop()
         self.changed.clear()
         self._stream, self._next = iter(()), None
-
 
     def _aim(self) -> int:
         return self.position_ns if self._target_ns is None else self._target_ns

@@ -65,10 +65,8 @@ class BagReader:
 
     Args:
         path: a folder with a ``metadata.yaml``, or a single ``.mcap`` or ``.db3`` file. Of a recording that was killed,
-            and
-            so has neither ``metadata.yaml`` nor an index, everything that was written is read. A folder may also
-            contain
-            only the numbered files of one recording.
+            and so has neither ``metadata.yaml`` nor an index, everything that was written is read. A folder may also
+            contain only the numbered files of one recording.
         called: its name in messages; by default its path.
         parts: the files of the recording, with any names, if several are to be read as one.
 
@@ -146,7 +144,9 @@ class BagReader:
         return reader
 
     def _finished(self, target: Path) -> Any:
-        """Return the target for the library: the path, or its file with missing parts added and refused parts removed.
+        """Return the target for the library.
+
+        It is the path, or its file with missing parts added and refused parts removed.
         """
         if target.is_file() and target.suffix == PACKED:
             from linkwright.bag.packed import unpacked
@@ -172,8 +172,7 @@ class BagReader:
         """The diagnostics of the recording.
 
         They report that it has no end because it was killed or truncated in a copy (BAG109), topics that are not ROS
-        2's
-        (BAG112), and that it has no messages (BAG113).
+        2's (BAG112), and that it has no messages (BAG113).
         """
         found = []
         if not self._is_cut_off and not any(topic.count for topic in self.topics):
@@ -271,8 +270,9 @@ class BagReader:
         return self._look(lambda: self._moments.state_at(topics, at_ns))
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
-        """Return when the last message before a time was received, in nanoseconds since the epoch; None if there is
-        none.
+        """Return when the last message before a time was received, in nanoseconds since the epoch.
+
+        None if there is none.
 
         Raises:
             LinkwrightError: BAG102, the messages cannot be read.
@@ -280,8 +280,9 @@ class BagReader:
         return self._look(lambda: self._moments.time_before(topics, at_ns))
 
     def counts(self, parts: int) -> dict[str, list[int]]:
-        """Return the number of messages of each topic in equal parts of the recording; empty for a file without an
-        index.
+        """Return the number of messages of each topic in equal parts of the recording.
+
+        Empty for a file without an index.
         """
         return self._moments.counts(parts) if self._reader.message_count else {}
 

@@ -45,8 +45,7 @@ class BagWriter:
     """A recording that is being written; close it, or use it in a ``with`` statement.
 
     The recording is finished even if a signal other than SIGKILL ends the process (`unfinished`). Files are named and
-    split
-    as by rosbag2's ``SequentialWriter``.
+    split as by rosbag2's ``SequentialWriter``.
 
     Args:
         path: the folder to create; for a single file, the file.

@@ -105,7 +105,9 @@ async def _carry(first: Side, second: Side, directions: tuple[Direction, Directi
 
 
 def _relevant(log: LogSink) -> LogSink:
-    """Return a sink that drops the log of mirrored nodes, which warn of a quality of service that they did not choose.
+    """Return a sink that drops the log of mirrored nodes.
+
+    They would warn of a quality of service that they did not choose.
     """
 
     def take(record: LogRecord) -> None:

@@ -51,8 +51,7 @@ class Direction:
 
     Each node in the source has a node with the same name in the target, with the same publishers and services. Its
     subscriptions and clients are only announced there, see `Presence`. The bridge's own node subscribes in the source
-    to
-    topics that have subscriptions in the target, and calls the services of the source.
+    to topics that have subscriptions in the target, and calls the services of the source.
 
     Args:
         source: the network that the traffic comes from.
@@ -167,7 +166,9 @@ class Direction:
     # --- inside ------------------------------------------------------------------------------------------------------
 
     def _remove_departed(self) -> None:
-        """Remove empty nodes, and the mirrors of publishers that have left once their last messages have been carried.
+        """Remove empty nodes, and the mirrors of publishers that have left.
+
+        A mirror stays until the last messages of its publisher have been carried.
         """
         for gid, quiet in tuple(self._leaving.items()):
             publisher = self._publishers[gid]
@@ -188,9 +189,7 @@ class Direction:
         return self._nodes[info.node.full_name]
 
     def _decide(self) -> None:
-        """Decide which endpoints and nodes of the source are mirrored in the target, and which streams are awaited
-        there.
-        """
+        """Decide which endpoints and nodes of the source are mirrored, and which streams are awaited."""
         seen, there = self._source.seen, self._target.seen
         self._wanted_publishers, self._wanted_services, self._wanted_nodes = {}, {}, {}
         self._wanted_presences = {}
@@ -245,9 +244,8 @@ class Direction:
         """Subscribe to the streams that have subscriptions in the target.
 
         A stream with history is kept until its publishers are gone: if the bridge subscribed again, late joiners would
-        receive
-        it twice. Every possible stream is kept while a topic has no publisher, and while its first publisher is being
-        matched.
+        receive it twice. Every possible stream is kept while a topic has no publisher, and while its first publisher is
+        being matched.
         """
         demanded = self._target.seen.demanded
         wanted = {

@@ -86,7 +86,9 @@ class Side:
         return self.graph.open_node(NodeIdentity(node.name, node.namespace, self._enclave), Remappings(()))
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Register a callback for every change of the graph, including killed processes; it is called from any thread.
+        """Register a callback for every change of the graph, including killed processes.
+
+        It is called from any thread.
         """
         self._transport.watch(changed)
         self._transport.watch_lost(lambda _publisher: changed())

@@ -257,8 +257,9 @@ def get_service(name: str) -> type[Any]:
 
 
 def get_action(name: str) -> type[Any]:
-    """Return the class of an action, with `Goal`, `Result`, `Feedback` and `Impl`; names and errors are as in
-    `get_message`.
+    """Return the class of an action, with `Goal`, `Result`, `Feedback` and `Impl`.
+
+    Names and errors are as in `get_message`.
     """
     return _named(name, ActionType, "action")
 

@@ -40,8 +40,9 @@ class Abridgement(NamedTuple):
 def to_dict(
     message: Message, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False
 ) -> OrderedDict[str, Any]:
-    """Return the fields of a message as plain values: numbers, bools, strings, lists, and dictionaries for nested
-    messages.
+    """Return the fields of a message as plain values.
+
+    These are numbers, bools, strings, lists, and dictionaries for nested messages.
 
     Bytes become strings of the characters with the same codes (rosidl_runtime_py).
 
@@ -96,8 +97,9 @@ def _line(message: Message, shown: Abridgement) -> str:
 
 
 def abbreviated(kind: FieldType, value: Any) -> str:
-    """Return the type and length of an array or sequence instead of its values: ``<sequence type: double, length:
-    12>``.
+    """Return the type and length of an array or sequence instead of its values.
+
+    An example is ``<sequence type: double, length: 12>``.
     """
     primitive = PRIMITIVES.get(kind.base)
     name = kind.base if primitive is None else primitive.idl_name

@@ -27,8 +27,7 @@ def checks_fields_as_ros(variables: Mapping[str, str] = os.environ) -> bool:
     """Return whether values of fields are checked as in ROS 2, which accepts fewer values than we do.
 
     That is the case if the user names Humble or an earlier distribution, or if ``ROS_PYTHON_CHECK_FIELDS`` requests it,
-    as
-    in newer distributions, which otherwise accept any value.
+    as in newer distributions, which otherwise accept any value.
     """
     if variables.get("ROS_PYTHON_CHECK_FIELDS") == "1":
         return True

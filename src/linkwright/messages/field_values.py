@@ -27,8 +27,7 @@ def set_fields(
     """Set fields of a message from plain data: numbers, bools, strings, lists, and mappings for nested messages.
 
     A nested message is replaced: fields that are not given get their defaults. An integer is accepted for a float, a
-    number
-    for a string, and a string for a number if it contains one.
+    number for a string, and a string for a number if it contains one.
 
     Args:
         message: the message to change.

@@ -36,8 +36,7 @@ class Message:
 
     The value of field ``x`` is in the slot ``_x`` as in rosidl_generator_py's classes; the property ``x`` gives access
     to it. A published message is passed to every subscriber in the process without a copy: subscribers may read it but
-    must
-    not change it.
+    must not change it.
     """
 
     __slots__: tuple[str, ...] = ()
@@ -307,7 +306,9 @@ def _unwritable(message: object, fault: Exception) -> MessageDataError:
 
 
 def _bad_field(message: Message, path: str) -> str | None:
-    """Return the field whose value could not be assigned now, and the reason in the words of the checks on assignment.
+    """Return the field whose value could not be assigned now, and the reason.
+
+    The reason has the words of the checks on assignment.
     """
     for field in definition_of(type(message)).fields:
         here = f"{path}.{field.name}" if path else field.name

@@ -197,8 +197,7 @@ class TransformBatch:
     """Transforms that are valid at one moment.
 
     Publishers that send the same frames repeatedly should pass the same two tuples each time, because receivers cache
-    their
-    results for them.
+    their results for them.
 
     Attributes:
         parents: the parent frame of each transform.
@@ -279,8 +278,7 @@ class TFMessage(Message):
         """The transforms as message objects.
 
         The list may be changed until the message is published if the message was made from objects, and never if it was
-        made
-        from a batch.
+        made from a batch.
         """
         if self._list is None:
             if self._received is not None:
@@ -320,8 +318,9 @@ class TFMessage(Message):
         return TransformBatch.from_messages(self._list)
 
     def columns(self) -> tuple[tuple[str, ...], tuple[str, ...], list[int], NDArray[np.float64]] | None:
-        """Return the parents, children, stamps (nanoseconds since the epoch) and poses, shape (n, 7), of the
-        transforms.
+        """Return the parents, children, stamps and poses of the transforms.
+
+        Stamps are nanoseconds since the epoch; poses have the shape (n, 7).
 
         None is returned for a message that stores objects, because reading the objects directly is faster.
         """

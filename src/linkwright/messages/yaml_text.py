@@ -1,9 +1,8 @@
 """Write messages as YAML, character for character as PyYAML writes them and ``ros2 topic echo`` shows them.
 
 PyYAML takes milliseconds for a message of a few hundred numbers, too slow to follow /tf. Therefore the lines are
-written
-here, from a plan for each class. PyYAML is used only for strings, whose quoting is complicated, and its results are
-cached.
+written here, from a plan for each class. PyYAML is used only for strings, whose quoting is complicated, and its results
+are cached.
 """
 
 from __future__ import annotations
@@ -178,8 +177,9 @@ def _dumped(data: Any, *, flow_style: bool) -> str:
     import yaml  # imported here because a launch without an echo does not need it
 
     class Dumper(yaml.SafeDumper):
-        """PyYAML's dumper, except that a message's fields are never in braces, whatever the style of lists
-        (rosidl_runtime_py).
+        """PyYAML's dumper, except that the fields of a message are never in braces.
+
+        The style of lists does not matter (rosidl_runtime_py).
         """
 
         def represent_fields(self, data: OrderedDict[str, Any]) -> yaml.MappingNode:

@@ -1,4 +1,4 @@
-"""Modules that stand in for ROS 2 modules that are not installed."""
+"""Modules with the names and interfaces of ROS 2 modules that are not installed."""
 
 from linkwright.standins.activation import activate
 

@@ -136,8 +136,7 @@ class CvBridge:
         Args:
             cmprs_img_msg: the message.
             desired_encoding: the encoding of the result, converted from ``bgr8``; ``passthrough`` for the encoding of
-                the
-                file.
+                the file.
 
         Raises:
             CvBridgeError: the data is not an image, or it cannot be converted.

@@ -115,8 +115,7 @@ def create_cloud(
         header: its stamp and frame (std_msgs/msg/Header).
         fields: the fields of a point (sensor_msgs/msg/PointField).
         points: rows with a value for each field, or a structured array; an array of width by height becomes an
-            organized
-            cloud.
+            organized cloud.
         step: bytes from one point to the next; None for the size of the fields.
 
     Raises:

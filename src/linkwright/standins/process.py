@@ -21,8 +21,7 @@ def standin_path() -> str:
     """Return the folder to put on ``PYTHONPATH``.
 
     It contains only a ``sitecustomize``, which runs the next ``sitecustomize`` too, and ``linkwright_pytest``, which
-    pytest
-    loads.
+    pytest loads.
     """
     return str(_STARTUP)
 
@@ -37,8 +36,7 @@ def environment(base: Mapping[str, str] | None = None) -> dict[str, str]:
         A copy in which `standin_path` is first on ``PYTHONPATH``. ``LINKWRIGHT_SITE`` names the folders of the packages
         that the stand-ins need, for interpreters that do not have them. Applying this function to its result changes
         nothing. Source folders of a package that has a stand-in, such as a clone of rclpy in the workspace, are left
-        out
-        unless the user put them there: they are not built, and would hide the stand-in.
+        out unless the user put them there: they are not built, and would hide the stand-in.
     """
     result = dict(os.environ if base is None else base)
     _leave_out_hiding_sources(result)
@@ -56,8 +54,8 @@ def python_command(arguments: Sequence[str], base: Mapping[str, str] | None = No
 
     Returns:
         The interpreter, followed by the arguments. It is the interpreter of the active virtual environment if its
-        version
-        is that of ours, otherwise ours: the compiled libraries that the stand-ins need are built for one version.
+        version is that of ours, otherwise ours: the compiled libraries that the stand-ins need are built for one
+        version.
     """
     variables = os.environ if base is None else base
     return [_interpreter(variables), *arguments]

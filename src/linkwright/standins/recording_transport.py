@@ -1,5 +1,4 @@
-"""Record, play and rewrite recordings from programs (``Recorder``, ``Player``, ``bag_rewrite`` ... of ``rosbag2_py``).
-"""
+"""Record, play and rewrite recordings from programs: ``rosbag2_py`` (``Recorder``, ``Player`` ...)."""
 
 from __future__ import annotations
 
@@ -290,8 +289,9 @@ def _how_to_play(options: PlayOptions, *, paused: bool) -> _HowToPlay:
 
 
 def _remapping(rule: str) -> list[str]:
-    """Return the arguments for one remapping option; ``--ros-args`` and ``--remap``, which rosbag2 accepts too, are
-    dropped.
+    """Return the arguments for one remapping option.
+
+    ``--ros-args`` and ``--remap``, which rosbag2 accepts too, are dropped.
     """
     return [] if rule.startswith("-") else ["--remap", rule]
 

@@ -20,8 +20,7 @@ A line ``origin: names`` means that ``origin`` defines these names; in ``ours=th
 right. The origin may be another stand-in module. ``import`` lists modules; a submodule of the package takes precedence.
 ``since`` gives the distribution for names that ROS 2 Humble lacks. Names with a leading underscore, and submodules that
 no line names, are importable but not in ``__all__``. ``setup`` is called after the module is created; ``others``
-returns
-names that are not in the table.
+returns names that are not in the table.
 
 Programs wait while a table is read, so it is read without a parsing library, and only when its package is imported.
 """

@@ -55,8 +55,7 @@ class BackgroundTransport(ABC):
         departures: judges how remote publishers left.
         logger: logs problems.
         only_looks: whether the transport only discovers remote nodes and endpoints. The nodes and endpoints of this
-            graph
-            are then not announced, which saves creating them on the network.
+            graph are then not announced, which saves creating them on the network.
         must_join: whether the caller of `join` raises `problem` because it needs the network; the problem is then not
             logged.
     """

@@ -1,5 +1,6 @@
-"""UDP multicast without DDS, for commands that test whether the network supports it, with the group and port of
-ros2cli.
+"""UDP multicast without DDS, for commands that test whether the network supports it.
+
+Group and port are those of ros2cli.
 """
 
 from __future__ import annotations

@@ -63,8 +63,9 @@ class Assets:
 
 
 def _content(package: str, share: Path, relative: PurePosixPath) -> bytes:
-    """Read a file after resolving and checking links, because colcon links some files into other folders of the
-    package.
+    """Read a file after resolving and checking links.
+
+    colcon links some files into other folders of the package.
     """
     path = (share / relative).resolve(strict=True)
     if not path.is_relative_to(share.resolve(strict=True)):

@@ -50,8 +50,9 @@ class Texts(dict[str, bytes]):
 
 
 class TextLists(dict[tuple[str, ...], bytes]):
-    """A cache of encoded lists of strings: their number, then each as in `Texts`; only the last is padded to
-    `alignment`.
+    """A cache of encoded lists of strings: their number, then each as in `Texts`.
+
+    Only the last is padded to `alignment`.
     """
 
     def __init__(self, alignment: int) -> None:

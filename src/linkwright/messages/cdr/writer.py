@@ -1,8 +1,7 @@
 """Compile, for a structure, the function that writes it as CDR.
 
 The function packs runs of fixed fields, including those of nested structures, with one `struct` call each, takes
-encoded
-strings from a cache, uses arrays without copying them, and joins all parts at the end: nothing is copied twice.
+encoded strings from a cache, uses arrays without copying them, and joins all parts at the end: nothing is copied twice.
 """
 
 from __future__ import annotations

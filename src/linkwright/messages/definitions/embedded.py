@@ -2,8 +2,7 @@
 
 The text of one message comes first, followed by the texts of the messages in it, each after a line of ``=`` and a line
 with its name (``MSG: geometry_msgs/Point``; ``IDL:`` for IDL). This is the format of MCAP's ``ros2msg`` and
-``ros2idl``,
-and of rosbag2's SQLite files.
+``ros2idl``, and of rosbag2's SQLite files.
 """
 
 from __future__ import annotations
@@ -21,8 +20,7 @@ def add_definitions(type_name: str, text: str, origin: str, *, idl: bool = False
     """Register the definition of a message, and of the messages in it, from data.
 
     Interfaces that come with Linkwright and those of the workspace take precedence, and so does the first of two texts
-    for
-    one name. The texts are parsed when their messages are requested, and their mistakes are reported then.
+    for one name. The texts are parsed when their messages are requested, and their mistakes are reported then.
 
     Args:
         type_name: the type, such as ``my_msgs/msg/Count``; a text that is not the name of a message is ignored.

@@ -2,8 +2,7 @@
 
 Supported is everything that rosidl generates from ``.msg``, ``.srv`` and ``.action`` files: modules, structures of
 primitives, strings, sequences and arrays, typedefs of these, constants, and ``@default``. Other annotations are
-skipped.
-Unions, enumerations and other constructs of IDL that such files do not have are refused with their location.
+skipped. Unions, enumerations and other constructs of IDL that such files do not have are refused with their location.
 """
 
 from __future__ import annotations

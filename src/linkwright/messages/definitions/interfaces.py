@@ -59,8 +59,9 @@ def _is_words(text: str) -> bool:
 
 
 def snake_case(name: str) -> str:
-    """Return the module name of an interface: ``JointState`` gives ``joint_state``, ``TFMessage`` ``tf_message``
-    (rosidl).
+    """Return the module name of an interface (rosidl).
+
+    ``JointState`` gives ``joint_state``, and ``TFMessage`` gives ``tf_message``.
     """
     words: list[str] = []
     for at, letter in enumerate(name):
@@ -73,8 +74,9 @@ def snake_case(name: str) -> str:
 
 
 def python_module(type_name: str) -> str:
-    """Return the module in which rosidl_generator_py puts a class: ``std_srvs.srv._set_bool`` for all of SetBool's
-    classes.
+    """Return the module in which rosidl_generator_py puts a class.
+
+    It is ``std_srvs.srv._set_bool`` for all of the classes of SetBool.
     """
     package, kind, name = type_name.split("/")
     return f"{package}.{kind}._{snake_case(name.split('_')[0])}"
@@ -178,8 +180,7 @@ class FieldType(NamedTuple):
         return self.container is not Container.ONE and primitive is not None and primitive.array_code is not None
 
     def spelled(self, package: str | None = None) -> str:
-        """Return the type as in a ``.msg`` file of `package`, such as ``geometry_msgs/Point[<=3]`` or ``string<=10``.
-        """
+        """Return the type as in a ``.msg`` file of `package`, such as ``geometry_msgs/Point[<=3]``."""
         text = self.base
         if "/" in text:
             owner, _, name = text.split("/")

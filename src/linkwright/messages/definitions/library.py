@@ -55,8 +55,7 @@ class Library:
 
     Interfaces that come with Linkwright take precedence over interfaces of the workspace with the same name. Others are
     read, without a build, from the interface files of the packages that the current finder finds. An interface that is
-    in
-    neither place may be known from a definition that data contained.
+    in neither place may be known from a definition that data contained.
     """
 
     def __init__(self) -> None:
@@ -70,8 +69,9 @@ class Library:
         self._lock = threading.RLock()
 
     def definition(self, name: str, *kinds: str) -> Definition:
-        """Return the definition of a message, service or action, or of one of its parts
-        (``std_srvs/srv/SetBool_Request``).
+        """Return the definition of a message, service or action, or of one of its parts.
+
+        An example of a part is ``std_srvs/srv/SetBool_Request``.
 
         Args:
             name: ``package/kind/Name``, or ``package/Name``.
@@ -213,8 +213,9 @@ class Library:
     # --- the workspace --------------------------------------------------------------------------------------
 
     def _finder(self) -> PackageFinder:
-        """Return the current finder; without one, a finder that is cached for a while, because it has read the
-        workspace.
+        """Return the current finder.
+
+        Without one, a finder that is cached for a while, because it has read the workspace.
         """
         finder = active_finder()
         if finder is None:
@@ -295,8 +296,7 @@ def _parsed(source: SourceText, base: str, known: KnownMessages) -> Definition:
 
 
 def not_of_kind(definition: Definition, kind: str) -> Diagnostic:
-    """Return a diagnostic for an interface that exists but is not of the requested kind (message, service or action).
-    """
+    """Return a diagnostic for an interface that is not of the requested kind (message, service, action)."""
     name = definition.type_name
     is_a = {Structure: phrase("a message"), Service: phrase("a service"), Action: phrase("an action")}[type(definition)]
     return Diagnostic(

@@ -25,8 +25,7 @@ class ActionClient(action_client.ActionClient):
     """Sends goals to an action."""
 
     def get_num_entities(self) -> NumberOfEntities:
-        """Return the number of entities that the client uses: subscriptions to feedback and status, and three clients.
-        """
+        """Return the number of entities of the client: two subscriptions (feedback, status) and three clients."""
         return NumberOfEntities(num_subscriptions=2, num_clients=3)
 
 

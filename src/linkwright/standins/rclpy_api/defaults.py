@@ -47,7 +47,7 @@ def has_default_context() -> bool:
 
 
 def is_default(context: Context | None) -> bool:
-    """Return whether a context is the default context, or None, which stands for it."""
+    """Return whether a context is the default context, or None, which means the same."""
     return context is None or context is _Default.context
 
 

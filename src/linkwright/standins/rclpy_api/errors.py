@@ -47,7 +47,9 @@ class UnsupportedEventTypeError(RCLError):
 
 
 def name_as_rclpy() -> None:
-    """Give the exceptions rclpy's names in tracebacks and logs, such as ``rclpy.exceptions.InvalidNodeNameException``.
+    """Give the exceptions rclpy's names in tracebacks and logs.
+
+    An example is ``rclpy.exceptions.InvalidNodeNameException``.
     """
     for module in _MODULES:
         described = table.find(module)

@@ -18,7 +18,7 @@ from linkwright.standins.rclpy_api.defaults import check_initialized, get_defaul
 def _overrides(
     node_name: str, namespace: str, remappings: Sequence[tuple[str, str]], command_lines: Sequence[RosArguments]
 ) -> dict[str, Any]:
-    """Return the parameter overrides for a node from command lines, of which the first takes precedence."""
+    """Return the parameter overrides for a node from command lines; the first one takes precedence."""
     rules = Remappings(remappings)
     full_name = join(absolute_namespace(rules.namespace(namespace, node_name)), rules.node_name(node_name))
     overrides: dict[str, Any] = {}

@@ -32,7 +32,9 @@ class _OldName:
 
 
 def add_old_names() -> None:
-    """Add the deprecated names of policy values, such as ``ReliabilityPolicy.RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT``.
+    """Add the deprecated names of policy values.
+
+    An example is ``ReliabilityPolicy.RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT``.
     """
     for policy in (DurabilityPolicy, HistoryPolicy, LivelinessPolicy, ReliabilityPolicy):
         word = policy.__name__.removesuffix("Policy").upper()

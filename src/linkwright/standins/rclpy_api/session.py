@@ -61,8 +61,7 @@ def init(
         context: the context; None for the default context.
         domain_id: the network's domain; None for the value of ROS_DOMAIN_ID, or 0 if that is not set.
         signal_handler_options: the signals that shut the context down; None for all signals with the default context,
-            and
-            for no signals with another.
+            and for no signals with another.
 
     Raises:
         RuntimeError: the context is already initialised.

@@ -175,8 +175,7 @@ def _report_with_hint(kind: type[BaseException], error: BaseException, traceback
     """Print an uncaught error as Python does, with a hint if a ROS module, or a name in one, is missing.
 
     Ctrl-C ends a node without a traceback while it waits for messages or is still being imported. In the user's own
-    code,
-    the traceback is printed to show the location.
+    code, the traceback is printed to show the location.
     """
     if kind is KeyboardInterrupt and _is_between_messages(traceback):
         return

@@ -34,8 +34,7 @@ def parse_macro_arg(s: str) -> tuple[str, tuple[str | None, str | None] | None, 
 
     Returns:
         The name of the parameter; its default; and the rest of the list. The default is the name of the caller's
-        property
-        to use (or None) and a text (or None); it is None for a parameter without a default.
+        property to use (or None) and a text (or None); it is None for a parameter without a default.
 
     Raises:
         XacroException: a quote is not closed.

@@ -23,8 +23,7 @@ class Backlog:
     Args:
         depth: the number of samples that the writer keeps.
         fragment_size: the maximum size in bytes of a sample that is sent in one packet; larger samples may be received
-            in
-            part.
+            in part.
         write: writes a sample.
         acknowledged: returns whether all readers have acknowledged all written samples.
         matters: returns whether there is a reader that a replaced sample would harm.

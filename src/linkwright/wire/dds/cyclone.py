@@ -255,8 +255,7 @@ def _open_package() -> None:
     """Make the package `cyclonedds` import its modules on first use instead of all at once.
 
     Its ``__init__`` imports them all, which takes several times as long as importing the modules used here. Other code
-    that
-    imports the package in this process finds everything in it as before.
+    that imports the package in this process finds everything in it as before.
     """
     spec = find_spec("cyclonedds")
     if "cyclonedds" in sys.modules or spec is None:

@@ -53,10 +53,8 @@ class Discovery:
 
     A gid has 24 bytes for ROS 2 up to Humble and 16 from Iron on, and the wrong size harms the nodes that receive it.
     Ours has the size used by the ROS 2 nodes that have been discovered. If both sizes occur, it has the older size,
-    because
-    ``ros2 node list`` of the older distribution would fail otherwise. Processes of Linkwright understand both sizes and
-    are
-    ignored here.
+    because ``ros2 node list`` of the older distribution would fail otherwise. Processes of Linkwright understand both
+    sizes and are ignored here.
 
     Args:
         participant: our participant.
@@ -143,12 +141,12 @@ class Discovery:
         return next((host for host, _ in announced_processes(partial(self._dds.property, qos)) if host), "")
 
     def _process_of(self, qos: int) -> int | None:
-        """Return the process id that Fast DDS or Cyclone announces for a participant; None unless it runs on this
-        machine.
+        """Return the process id that Fast DDS or Cyclone announces for a participant.
+
+        None unless it runs on this machine.
 
         A process in a container may have the host name of this machine and an id that belongs to another process here,
-        or to
-        none.
+        or to none.
         """
         if not process_namespace():
             return None
@@ -264,12 +262,9 @@ class DiscoveryRequests:
     """Listens with a second reader of ``ros_discovery_info`` until every participant has announced its nodes.
 
     Otherwise some would announce them only after seconds. A writer of Fast DDS repeats its last announcement to a
-    reader
-    when it discovers the reader. Often that happens before Cyclone knows the writer, so the announcement is lost. Fast
-    DDS
-    ignores Cyclone's request to repeat it, and repeats it only after 3 s. A reader that is created once the writer is
-    known
-    receives the announcement within milliseconds.
+    reader when it discovers the reader. Often that happens before Cyclone knows the writer, so the announcement is
+    lost. Fast DDS ignores Cyclone's request to repeat it, and repeats it only after 3 s. A reader that is created once
+    the writer is known receives the announcement within milliseconds.
 
     Args:
         listen: creates such a reader; returns a function that deletes it.

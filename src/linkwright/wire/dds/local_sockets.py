@@ -25,8 +25,7 @@ def other_processes(domain_id: int, tables: Path = Path("/proc/self/net")) -> in
     """Return a lower bound of the number of other processes that take part in a domain.
 
     No process listens twice on a port of the domain. The number is therefore the number of sockets on its multicast
-    port or
-    on its unicast ports for announcements (every second port), whichever is greater.
+    port or on its unicast ports for announcements (every second port), whichever is greater.
 
     Args:
         domain_id: the DDS domain.

@@ -68,8 +68,9 @@ class Receiver:
         self._room, self._looks = 0, 1 if self._is_stuck else _LOOKS
 
     def takes_one(self) -> bool:
-        """Wait until a packet fits into the buffer; return whether it fits before the checks for this sample are used
-        up.
+        """Wait until a packet fits into the buffer.
+
+        Return whether it fits before the checks for this sample are used up.
         """
         if not self._room:
             self._room = self._next_room()
@@ -174,8 +175,7 @@ class PacedWriter:
         guid: the writer's GUID.
         depth: the maximum number of waiting samples; newer samples replace the oldest.
         write: writes a sample as published at a time, in ns since the epoch (None for now); returns whether that
-            worked.
-            The writer numbers the samples that were written from 1.
+            worked. The writer numbers the samples that were written from 1.
         readers: returns the GUIDs of the readers of Fast DDS that the writer is matched with.
         pacer: sends the large samples.
     """
@@ -237,8 +237,7 @@ class PacedWriter:
             self._waiting.clear()
 
     def _places(self, sample: bytes) -> dict[bytes, Address]:
-        """Return the addresses of the readers that a sample is paced for; empty for a sample that fits in one packet.
-        """
+        """Return the addresses of the readers that a sample is paced for; empty if it fits in one packet."""
         return self._pacer.places_of(self._readers()) if len(sample) > FRAGMENT and self._is_numbered else {}
 
     def _write_now(self, sample: bytes, published: int | None = None) -> bool:

@@ -90,7 +90,9 @@ class Participant:
             self._dds.dds_delete(entity)
 
     def close(self) -> None:
-        """Leave the domain and delete all entities; the last participant also deletes the domain's sockets and threads.
+        """Leave the domain and delete all entities.
+
+        The last participant also deletes the domain's sockets and threads.
         """
         self.closed = True
         self._dds.dds_delete(self.entity)

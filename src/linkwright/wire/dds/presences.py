@@ -1,4 +1,6 @@
-"""Endpoints that are announced in a domain but neither send nor receive: the samples of their readers are never taken.
+"""Endpoints that are announced in a domain but neither send nor receive.
+
+The samples of their readers are never taken.
 """
 
 from __future__ import annotations

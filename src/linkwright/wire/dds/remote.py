@@ -120,8 +120,9 @@ class RemoteEndpoint:
         return is_fast(self.guid)
 
     def described(self, node: NodeIdentity | None, host: str = "") -> EndpointInfo | None:
-        """Return its description in ROS terms; None for an endpoint outside ROS or the second half of a service or
-        client.
+        """Return its description in ROS terms.
+
+        None for an endpoint outside ROS or the second half of a service or client.
 
         Args:
             node: the node that it belongs to, if known.
@@ -281,8 +282,7 @@ class RemoteGraph(Outside):
         """Return whether all participants have announced their nodes, and the endpoints of those nodes are known.
 
         A participant that listens to announcements belongs to ROS and will announce its own nodes. A participant
-        without known
-        endpoints is given a moment.
+        without known endpoints is given a moment.
         """
         now = time.monotonic()
         with self._lock:

@@ -283,7 +283,9 @@ class IncomingService:
 
 
 def _belong_together(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: str) -> bool:
-    """Return whether two endpoints belong to the same client or server, by its id or, without one, by the participant.
+    """Return whether two endpoints belong to the same client or server.
+
+    They are compared by the ID, or by the participant if there is no ID.
     """
     if a is None or b is None:
         return False
@@ -293,8 +295,9 @@ def _belong_together(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: st
 
 
 def _divided(data: bytes) -> tuple[int, int, bytes]:
-    """Split a sample into the client's id, the sequence number and the body as CDR; without a header, the body is
-    empty.
+    """Split a sample into the client's id, the sequence number and the body as CDR.
+
+    Without a header, the body is empty.
     """
     if len(data) < _BODY:
         return 0, 0, b""

@@ -182,8 +182,7 @@ def _machine(interfaces: str, addresses: list[str], most: int, *, multicast: boo
     """Return a configuration for discovery on this machine.
 
     It uses unicast to each participant index at the machine's own addresses, and multicast that never leaves the
-    machine
-    (TTL 0). Multicast is received on loopback only, so that announcements of other machines are ignored.
+    machine (TTL 0). Multicast is received on loopback only, so that announcements of other machines are ignored.
     """
     peers = "".join(f'<Peer address="{address}"/>' for address in ("127.0.0.1", *addresses))
     by_multicast = (

@@ -9,12 +9,11 @@ rmw_cyclonedds_cpp up to Jazzy sends none. A type is a C structure whose first m
 (``ddsi_sertype_ops``). Here the type gets a table of ours without the functions that describe the type.
 
 Second, Cyclone's table of instances keeps the key of a sample beyond the lifetime of its topic. The package's keys
-point
-to their type to see whether it has key members at all, but they are not counted as references to it. ROS types have no
-keys, so all of them share one entry, the entry of the topic that was written first. If that type were freed with its
-last topic, each further sample of any topic would be compared through a dangling pointer. Entries would then not be
-found again and accumulate, or the wrong one would be freed, which ends in a segmentation fault. Therefore no type is
-freed before its domain is closed.
+point to their type to see whether it has key members at all, but they are not counted as references to it. ROS types
+have no keys, so all of them share one entry, the entry of the topic that was written first. If that type were freed
+with its last topic, each further sample of any topic would be compared through a dangling pointer. Entries would then
+not be found again and accumulate, or the wrong one would be freed, which ends in a segmentation fault. Therefore no
+type is freed before its domain is closed.
 """
 
 from __future__ import annotations
@@ -77,8 +76,7 @@ class TopicTypes:
         """Create a type and return its address.
 
         The type belongs to an unused topic of the Python package, which is deleted with `participant`. If the topic
-        were
-        deleted immediately, Cyclone would drop the description while it reads those of other types without a lock
+        were deleted immediately, Cyclone would drop the description while it reads those of other types without a lock
         (``ddsi_topic_descriptor_from_type``): graphs of a process that joined at the same time crashed.
         """
         name = _UNUSED.format(len(self._made))
@@ -96,8 +94,7 @@ def _undescribing(table: int) -> int:
     """Return the address of a copy of a function table without the functions that describe types.
 
     The address of the table itself is returned if its layout is unknown. The copy is never freed, because Cyclone may
-    use
-    it until the process ends.
+    use it until the process ends.
     """
     dds = load()
     known = (c.c_void_p * _FUNCTIONS).from_address(table)

@@ -62,10 +62,8 @@ def keep_large_blocks() -> None:
     """Make the C library keep freed blocks of the size of images for the next image.
 
     By default glibc returns them to the system, which has to clear each page again: half of the processor time of an
-    image
-    publisher. It keeps blocks up to the size of the largest block that was ever mapped and freed (``M_MMAP_THRESHOLD``
-    in
-    mallopt(3)), so this function frees such a block, whose pages are never touched.
+    image publisher. It keeps blocks up to the size of the largest block that was ever mapped and freed
+    (``M_MMAP_THRESHOLD`` in mallopt(3)), so this function frees such a block, whose pages are never touched.
     """
     bytes(_LARGEST_KEPT)
 
@@ -226,7 +224,9 @@ class OutgoingTopic(MirroredTopic):
         return [endpoint.guid for endpoint in known if endpoint is not None and endpoint.is_fast]
 
     def _make_backlog(self, fragment_size: int) -> Backlog | None:
-        """Return a queue for large samples; None if the writer does not replace samples that readers may request again.
+        """Return a queue for large samples.
+
+        None if the writer does not replace samples that readers may request again.
         """
         profile = self._publisher.qos_profile
         is_reliable = profile.reliability is not ReliabilityPolicy.BEST_EFFORT
@@ -267,8 +267,7 @@ class OutgoingTopic(MirroredTopic):
         """Write a sample with Cyclone; return whether Cyclone accepted it.
 
         If the writer keeps all samples, or the sample has already been sent by the pacer, this method retries until
-        slow
-        readers have caught up or the lease of dead readers has expired.
+        slow readers have caught up or the lease of dead readers has expired.
 
         Args:
             data: the sample.

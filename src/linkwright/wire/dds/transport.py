@@ -56,8 +56,7 @@ class DdsTransport(BackgroundTransport):
         """Return whether all processes that can take part are known, so that there is nothing to wait for.
 
         This can be known only for Linkwright's processes on this machine, and only if no others are looked for. It
-        cannot be
-        known if this process has several participants.
+        cannot be known if this process has several participants.
         """
         if self._settings.range is not Range.MACHINE:
             return False

@@ -117,12 +117,12 @@ _MINIMAL_ID, _COMPLETE_ID = 0x40001001, 0x40001002
 
 
 def empty_type_data(type_name: str) -> tuple[bytes, bytes]:
-    """Return TypeInformation and TypeMapping of a final structure without members (DDS-XTypes 1.3, 7.3.4 and
-    7.6.3.2.2).
+    """Return TypeInformation and TypeMapping of a final structure without members.
+
+    Source: DDS-XTypes 1.3, 7.3.4 and 7.6.3.2.2.
 
     Cyclone's Python package creates the same data, but imports classes for all of XTypes to do so: that takes longer
-    than
-    joining a domain and discovering all its participants.
+    than joining a domain and discovering all its participants.
 
     Args:
         type_name: its DDS name.

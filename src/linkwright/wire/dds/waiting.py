@@ -24,8 +24,7 @@ class WaitingThread(threading.Thread):
         owner: the participant.
         report: called with the error when a handler fails; the thread continues.
         idle: called after the handlers, and after each call of `wake`; returns the seconds after which it must be
-            called
-            again, or None.
+            called again, or None.
     """
 
     def __init__(

@@ -191,8 +191,9 @@ class Engine(AnyEngine):
         self._tokens[presence] = self._session.liveliness().declare_token(token.key)
 
     def close_endpoint(self, endpoint: Any) -> None:
-        """Stop mirroring an endpoint; withdraw its token first, so that other processes no longer count on the
-        endpoint.
+        """Stop mirroring an endpoint.
+
+        Withdraw its token first, so that other processes no longer count on the endpoint.
         """
         token = self._tokens.pop(endpoint, None)
         if token is not None:

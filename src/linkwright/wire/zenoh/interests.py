@@ -90,8 +90,9 @@ class Interests:
             declared.undeclare()
 
     def ask_all(self, seconds: float, answered: Callable[[], None]) -> None:
-        """Request the live tokens of the domain; call it before `add_all`, after which Zenoh answers from its own
-        memory.
+        """Request the live tokens of the domain.
+
+        Call it before `add_all`, after which Zenoh answers from its own memory.
 
         Args:
             seconds: the longest wait.

@@ -45,8 +45,7 @@ class RemoteGraph(Outside):
         """Return whether a token disappeared a moment ago, so that news that it is alive is outdated.
 
         If a session requests tokens that it already knows, Zenoh answers in a separate task, and the news of a token's
-        end may
-        overtake the answer. A token that reappears after a broken connection takes longer.
+        end may overtake the answer. A token that reappears after a broken connection takes longer.
         """
         return key in self._gone and time.monotonic() - self._gone[key] < _GONE_FOR
 

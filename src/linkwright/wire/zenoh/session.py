@@ -36,8 +36,7 @@ def close_session(session: zenoh.Session) -> None:
     """Close a session, in the background if that takes long.
 
     Zenoh waits without a limit for connections whose buffers are full. This function returns after `_CLOSING_LIMIT` at
-    the
-    latest; then the process can end.
+    the latest; then the process can end.
     """
     closing = threading.Thread(target=session.close, name="linkwright-zenoh-close", daemon=True)
     try:

@@ -85,8 +85,8 @@ class OutgoingTopic:
         """Withdraw the publisher.
 
         A publisher that keeps messages is dropped without `undeclare`, which withdraws it too. Its `undeclare` would
-        hold the
-        GIL for up to 10 s while waiting for a thread of Zenoh that may itself be waiting for the GIL in a callback.
+        hold the GIL for up to 10 s while waiting for a thread of Zenoh that may itself be waiting for the GIL in a
+        callback.
         """
         self.abandon()
         if self._listener is not None:

@@ -433,7 +433,9 @@ class RtpsParticipant:
         return packets
 
     def _on_stranger(self, submessage: Submessage, source: Address) -> list[Packet]:
-        """Answer a participant that is not matched that neither side lacks anything, so that it stops repeating itself.
+        """Answer a participant that is not matched: neither side lacks anything.
+
+        So it stops repeating itself.
         """
         self._count += 1
         if isinstance(submessage, AckNack) and submessage.writer in (v.PUBLICATIONS_WRITER, v.SUBSCRIPTIONS_WRITER):

@@ -80,7 +80,9 @@ class Writer:
         return matched is not None and matched.heard
 
     def match(self, reader: bytes, addresses: tuple[Address, ...]) -> list[Packet]:
-        """Match a reader; return the first packets for it: the history if this writer keeps it, otherwise a heartbeat.
+        """Match a reader, and return the first packets for it.
+
+        These are the history if this writer keeps it, and otherwise a heartbeat.
         """
         if reader in self._readers:
             self._readers[reader].addresses = addresses
