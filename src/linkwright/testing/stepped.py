@@ -34,10 +34,13 @@ class AsyncSteppedGraph:
 
         async def test_the_talker_counts():
             async with AsyncSteppedGraph() as test:
-                chatter = test.record("/chatter") node = test.create_node("talker") publisher =
-                node.create_publisher(String, "chatter", 10) node.create_timer(0.5, lambda:
-                publisher.publish(String(data=f"Hello: {len(chatter)}"))) await test.advance(3600.0) assert len(chatter)
-                == 7200 assert chatter.last.data == "Hello: 7199"
+                chatter = test.record("/chatter")
+                node = test.create_node("talker")
+                publisher = node.create_publisher(String, "chatter", 10)
+                node.create_timer(0.5, lambda: publisher.publish(String(data=f"Hello: {len(chatter)}")))
+                await test.advance(3600.0)
+                assert len(chatter) == 7200
+                assert chatter.last.data == "Hello: 7199"
 
     Args:
         start: the time of day at the start, in seconds since the epoch.

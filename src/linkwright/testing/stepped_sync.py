@@ -21,10 +21,13 @@ class SteppedGraph:
 
     >>> from linkwright.messages import String
     >>> with SteppedGraph() as test:
-    ...     chatter = test.record("/chatter") ...     node = test.create_node("talker") ...     publisher =
-    node.create_publisher(String, "chatter", 10) ...     timer = node.create_timer(0.5, lambda:
-    publisher.publish(String(data=f"Hello: {len(chatter)}"))) ...     test.advance(3600.0) ...     len(chatter),
-    chatter.last.data (7200, 'Hello: 7199')
+    ...     chatter = test.record("/chatter")
+    ...     node = test.create_node("talker")
+    ...     publisher = node.create_publisher(String, "chatter", 10)
+    ...     timer = node.create_timer(0.5, lambda: publisher.publish(String(data=f"Hello: {len(chatter)}")))
+    ...     test.advance(3600.0)
+    ...     len(chatter), chatter.last.data
+    (7200, 'Hello: 7199')
 
     A node that is written for rclpy is tested in the same way: after `init_rclpy` nodes are created in the test's
     graph, and its steps run their callbacks without spinning::
