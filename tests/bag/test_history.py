@@ -7,7 +7,7 @@ import threading
 import numpy as np
 import pytest
 
-from linkwright.bag.history import History, _zstd, whole
+from linkwright.bag.history import History, _zstd, uncompressed_bytes
 from linkwright.bag.saving import in_simulated_time, last_reset_ns
 from linkwright.bag.stillness import Content, content_of
 from linkwright.messages import TFMessage, TransformBatch, deserialize, get_message, serialize
@@ -109,7 +109,7 @@ def test_large_messages_that_repeat_themselves_take_less_room_and_are_read_as_th
     assert [data for _, _, data in history.messages(["/camera"], 98 * SECOND)] == [image(98), image(99)]
     part = history.part(97 * SECOND, 99 * SECOND)
     assert sum(len(data) for _, _, data in part) < 204_000, "packed, but for the state before them"
-    assert [whole(data) for _, _, data in part] == [image(96), image(97), image(98), image(99)]
+    assert [uncompressed_bytes(data) for _, _, data in part] == [image(96), image(97), image(98), image(99)]
     history.close()
 
 
@@ -156,7 +156,7 @@ def states(clock: Clock, history: History, positions: list[float], *, start: flo
 
 def positions(messages: list[tuple[str, int, bytes]]) -> list[tuple[float, float]]:
     """Position and stamp, in seconds, of joint states."""
-    read = [deserialize(whole(data), JointState) for _, _, data in messages]
+    read = [deserialize(uncompressed_bytes(data), JointState) for _, _, data in messages]
     return [(each.position[0], each.header.stamp.sec + each.header.stamp.nanosec / 1e9) for each in read]
 
 

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.bridge.streams import awaited_streams, can_hear, stream_of
+from linkwright.bridge.streams import awaited_streams, can_receive, stream_of
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import QoSProfile, ReliabilityPolicy
@@ -47,5 +47,5 @@ def test_types_of_one_name_with_other_hashes_are_other_streams_where_the_type_is
 def test_who_can_hear_a_publisher(type_name, hashed, qos, over_dds, over_zenoh):
     subscription = endpoint(EndpointKind.SUBSCRIPTION, "std_msgs/msg/String", "")
     publisher = endpoint(EndpointKind.PUBLISHER, type_name, hashed, qos)
-    assert can_hear(subscription, publisher, keyed=False) == over_dds
-    assert can_hear(subscription, publisher, keyed=True) == over_zenoh
+    assert can_receive(subscription, publisher, keyed=False) == over_dds
+    assert can_receive(subscription, publisher, keyed=True) == over_zenoh

@@ -42,7 +42,7 @@ def parsed(text, kind="msg"):
 
 
 def fields(text):
-    return {field.name: (field.type.spelled("my_msgs"), field.default) for field in parsed(text).fields}
+    return {field.name: (field.type.to_msg_text("my_msgs"), field.default) for field in parsed(text).fields}
 
 
 def faults(text, kind="msg"):
@@ -317,7 +317,7 @@ class TestIdl:
 
     def test_what_rosidl_writes(self):
         definition = self.parsed(IDL)
-        assert {field.name: field.type.described() for field in definition.fields} == {
+        assert {field.name: field.type.to_idl_text() for field in definition.fields} == {
             "header": "std_msgs/Header",
             "x": "double",
             "covariance": "double[36]",

@@ -14,11 +14,11 @@ from threading import Thread
 import pytest
 
 from linkwright.nodes.process import main
-from linkwright.wire.dds import why_not
+from linkwright.wire.dds import unavailable_reason
 from tests.domains import own_domain
 from tests.waiting import SECONDS
 
-needs_network = pytest.mark.skipif(bool(why_not()), reason="needs DDS")
+needs_network = pytest.mark.skipif(bool(unavailable_reason()), reason="needs DDS")
 
 
 class Program:

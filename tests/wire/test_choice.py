@@ -9,7 +9,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError, install_hint
 from linkwright.graph import Graph
 from linkwright.wire.dds import DdsTransport
-from linkwright.wire.joining import available, check_settings, join, middleware, why_not
+from linkwright.wire.joining import available, check_settings, join, middleware, unavailable_reason
 from linkwright.wire.unfollowed import CYCLONE, ZENOH
 from linkwright.wire.zenoh import ZenohTransport
 
@@ -52,9 +52,9 @@ def test_the_variable_of_ros_chooses_and_then_what_is_installed(installed, packa
 
 def test_what_is_missing_is_named(installed):
     installed()
-    assert f"neither DDS nor Zenoh is installed: {install_hint('zenoh')}, or with 'dds'" in why_not({})
-    assert "the package 'eclipse-zenoh' is not installed" in why_not(ASKED)
-    assert "the package 'cyclonedds' is not installed" in why_not({"RMW_IMPLEMENTATION": CYCLONE})
+    assert f"neither DDS nor Zenoh is installed: {install_hint('zenoh')}, or with 'dds'" in unavailable_reason({})
+    assert "the package 'eclipse-zenoh' is not installed" in unavailable_reason(ASKED)
+    assert "the package 'cyclonedds' is not installed" in unavailable_reason({"RMW_IMPLEMENTATION": CYCLONE})
 
 
 def test_a_process_with_neither_says_so_and_goes_on(installed):

@@ -132,7 +132,7 @@ def test_what_fast_dds_tells_of_a_request_is_no_hash_of_the_service():
     hashes = {
         guid[:2]: [
             RemoteEndpoint(guid, 1, guid, False, topic, type_name, QoSProfile(1), {"typehash": "RIHS01_1"})
-            .described(None)
+            .endpoint_info(None)
             .type_hash
             for topic, type_name in (
                 ("rq/flipRequest", "std_srvs::srv::dds_::SetBool_Request_"),

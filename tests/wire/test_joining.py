@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.graph import Graph, LogRecord
 from linkwright.messages import String
-from linkwright.wire.dds import available, join, why_not
+from linkwright.wire.dds import available, join, unavailable_reason
 from linkwright.wire.dds.settings import most_participants
 from linkwright.wire.domain_id import MAX_DOMAIN_ID
 
@@ -49,7 +49,7 @@ def test_importing_does_not_load_the_library():
 def test_a_switch_keeps_a_process_to_itself(graph, log, monkeypatch):
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
     assert not available()
-    assert why_not() == "the environment variable LINKWRIGHT_DDS is 0"
+    assert unavailable_reason() == "the environment variable LINKWRIGHT_DDS is 0"
     assert join(graph) is None
     assert log == []
     assert goes_on(graph)
@@ -57,7 +57,7 @@ def test_a_switch_keeps_a_process_to_itself(graph, log, monkeypatch):
 
 def test_without_a_wheel_a_process_says_so_and_goes_on(graph, log, monkeypatch):
     monkeypatch.setattr("linkwright.wire.dds.joining.find_spec", lambda _name: None)
-    assert "'cyclonedds' is not installed" in why_not()
+    assert "'cyclonedds' is not installed" in unavailable_reason()
     assert join(graph) is None
     (text,) = texts(log)
     assert text.startswith(

@@ -73,18 +73,18 @@ def test_somebody_who_has_not_answered_is_waited_for(looking, monkeypatch):
     _, transport = looking
     here = 1
     monkeypatch.setattr(module, "other_processes", lambda _domain: here)
-    assert not transport._knows_everybody()
+    assert not transport._knows_all_processes()
     here = 0
-    assert transport._knows_everybody()
+    assert transport._knows_all_processes()
 
 
 def test_of_several_participants_of_a_process_the_system_cannot_tell(looking, processes, monkeypatch):
     _, transport = looking
     monkeypatch.setattr(module, "other_processes", lambda _domain: 0)
-    assert transport._knows_everybody()
+    assert transport._knows_all_processes()
     processes("beside")
     wait_until(transport.remote_nodes)
-    assert not transport._knows_everybody()
+    assert not transport._knows_all_processes()
 
 
 @pytest.mark.parametrize("range_name", ["SUBNET", "LOCALHOST"])
@@ -94,7 +94,7 @@ def test_beyond_the_own_machine_the_system_cannot_tell(range_name, monkeypatch):
     graph = Graph(threads=True)
     transport = join(graph, only_looks=True)
     assert transport is not None
-    assert not transport._knows_everybody()
+    assert not transport._knows_all_processes()
     graph.close_now()
 
 

@@ -39,27 +39,27 @@ class Buffer:
 
 def test_three_packets_go_into_an_empty_buffer_before_it_is_looked_at_again():
     buffer = Buffer(0, 3 * PACKET, 2 * PACKET, PACKET, 0)
-    assert [buffer.receiver.takes_one() for _ in range(3)] == [True] * 3
+    assert [buffer.receiver.wait_for_room() for _ in range(3)] == [True] * 3
     assert not buffer.pauses
-    assert buffer.receiver.takes_one()
+    assert buffer.receiver.wait_for_room()
     assert buffer.pauses == 2
 
 
 def test_nobody_waits_twice_for_a_reader_that_takes_nothing():
     buffer = Buffer(3 * PACKET)
-    assert not buffer.receiver.takes_one()
+    assert not buffer.receiver.wait_for_room()
     pauses = buffer.pauses
     buffer.receiver.begin()
-    assert not buffer.receiver.takes_one()
+    assert not buffer.receiver.wait_for_room()
     assert buffer.pauses == pauses + 1
     buffer.waiting = [0]
     buffer.receiver.begin()
-    assert buffer.receiver.takes_one()
+    assert buffer.receiver.wait_for_room()
 
 
 def test_where_the_system_does_not_tell_there_is_a_pause_after_every_other_packet():
     buffer = Buffer(None)
-    assert all(buffer.receiver.takes_one() for _ in range(4))
+    assert all(buffer.receiver.wait_for_room() for _ in range(4))
     assert buffer.pauses == 2
 
 
@@ -68,7 +68,7 @@ def test_a_sample_arrives_under_the_name_of_the_writer():
     reader.bind(("127.0.0.1", 0))
     reader.settimeout(60)
     pacer = Pacer(lambda _: reader.getsockname())
-    places = pacer.places_of([READER])
+    places = pacer.addresses_of([READER])
     pacer.send(WRITER, 7, LARGE, 5_000_000_000, places)
     packets = [reader.recv(0x1_0000) for _ in range(3)]
     pacer.stop(0.0)

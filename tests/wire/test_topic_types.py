@@ -13,7 +13,7 @@ import pytest
 from linkwright.messages import String, get_message
 from linkwright.wire.dds import open_domains as opened
 from linkwright.wire.dds.cyclone import CycloneError
-from linkwright.wire.dds.topic_types import _undescribing
+from linkwright.wire.dds.topic_types import _table_without_descriptions
 from linkwright.wire.dds.type_descriptions import empty_type_data
 
 make_idl_struct = pytest.importorskip("cyclonedds.idl", reason="there is no DDS here").make_idl_struct
@@ -152,7 +152,7 @@ def test_the_functions_that_describe_a_type_are_left_out(shared, processes):
 
 def test_a_table_of_another_version_is_left_alone():
     table = (ctypes.c_void_p * 14)(*range(100, 114))
-    assert _undescribing(ctypes.addressof(table)) == ctypes.addressof(table)
+    assert _table_without_descriptions(ctypes.addressof(table)) == ctypes.addressof(table)
 
 
 def test_a_topic_that_cyclone_refuses_is_an_error(processes):

@@ -11,7 +11,7 @@ from linkwright.graph.faults import RclError
 from linkwright.standins.rclpy_api.context import Context
 from linkwright.wire import unfollowed
 from linkwright.wire.joining import available, check_security, join
-from linkwright.wire.unfollowed import new_unfollowed_settings, unfollowed_settings
+from linkwright.wire.unfollowed import new_unsupported_settings, unsupported_settings
 from tests.domains import own_domain
 
 SECURE = {"ROS_SECURITY_ENABLE": "true"}
@@ -22,7 +22,7 @@ with_network = pytest.mark.skipif(not available(), reason="there is neither DDS 
 
 
 def codes(variables):
-    return [unfollowed_setting.code for unfollowed_setting in unfollowed_settings(variables)]
+    return [unfollowed_setting.code for unfollowed_setting in unsupported_settings(variables)]
 
 
 @pytest.mark.parametrize(
@@ -69,8 +69,8 @@ def test_nobody_joins_where_security_is_enforced():
 
 def test_each_setting_is_told_once_in_a_process(monkeypatch):
     monkeypatch.setattr(unfollowed, "_reported", set())
-    assert [setting.code for setting in new_unfollowed_settings(SERVER)] == ["DDS123"]
-    assert [setting.code for setting in new_unfollowed_settings({**SERVER, **SECURE})] == ["DDS122"]
+    assert [setting.code for setting in new_unsupported_settings(SERVER)] == ["DDS123"]
+    assert [setting.code for setting in new_unsupported_settings({**SERVER, **SECURE})] == ["DDS122"]
 
 
 @with_network

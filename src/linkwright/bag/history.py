@@ -60,7 +60,7 @@ def _zstd() -> Any:
     return zstd
 
 
-def whole(data: bytes) -> bytes:
+def uncompressed_bytes(data: bytes) -> bytes:
     """Return the original bytes of a message that may be compressed."""
     return bytes(_zstd().decompress(data)) if type(data) is Packed else data
 
@@ -196,7 +196,11 @@ class _Track:
             self.first = 0
         if self.name == TRANSFORMS:
             return _size(oldest[2])  # only the last seconds of these are useful
-        key = deserialize(whole(oldest[2]), TFMessage).batch.children if self.name == STATIC_TRANSFORMS else None
+        key = (
+            deserialize(uncompressed_bytes(oldest[2]), TFMessage).batch.children
+            if self.name == STATIC_TRANSFORMS
+            else None
+        )
         replaced = self.before.pop(key, None)
         self.before[key] = oldest
         return 0 if replaced is None else _size(replaced[2])
@@ -238,13 +242,13 @@ class _Track:
         place = bisect_left(self.kept, number, lo=self.first, key=lambda item: item[1])
         return place if place < len(self.kept) and self.kept[place][1] == number else None
 
-    def lasting(self, start_ns: int, end_ns: int) -> list[_Kept]:
+    def repeated_after(self, start_ns: int, end_ns: int) -> list[_Kept]:
         """Return the messages of an interval that were repeated after the interval."""
         return [item for item in self.between(start_ns, end_ns) if item[1] in self._lasting]
 
-    def still_at(self, at_ns: int) -> list[_Kept]:
+    def repeated_until(self, at_ns: int) -> list[_Kept]:
         """Return the repeated messages up to a time: all of transforms, only the last one of other topics."""
-        lasting = self.lasting(at_ns - _STILL_NS, at_ns)
+        lasting = self.repeated_after(at_ns - _STILL_NS, at_ns)
         if self.name == TRANSFORMS:
             return lasting
         return lasting[-1:] if lasting[-1:] == self.until(at_ns, 1) else []
@@ -408,7 +412,7 @@ class History:
 
         After its end, the iterator continues when new messages arrive.
         """
-        return _Onward(self, topics, start_ns)
+        return _LiveIterator(self, topics, start_ns)
 
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
         """Return the last message of each topic up to a time.
@@ -424,7 +428,7 @@ class History:
                     continue
                 if name == TRANSFORMS:
                     near_ns = at_ns - TRANSFORMS_NS
-                    kept = track.lasting(near_ns - _STILL_NS, near_ns - 1) + track.between(near_ns, at_ns)
+                    kept = track.repeated_after(near_ns - _STILL_NS, near_ns - 1) + track.between(near_ns, at_ns)
                 else:
                     count = sys.maxsize if name == STATIC_TRANSFORMS else 1
                     kept = track.clock_at(at_ns) if name == CLOCK_TOPIC else track.until(at_ns, count)
@@ -433,7 +437,7 @@ class History:
                         kept = before + kept
                     kept = kept or before
                 into = static if name == STATIC_TRANSFORMS else found
-                into += [(name, stamp, whole(data)) for stamp, _, data in kept]
+                into += [(name, stamp, uncompressed_bytes(data)) for stamp, _, data in kept]
         return static + sorted(found, key=lambda item: item[1])
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
@@ -450,12 +454,12 @@ class History:
 
         The messages needed to show the state at the beginning come first (see `state_at`), stamped with that time. The
         states that are still unchanged at the end follow. Messages stay compressed, because many uncompressed messages
-        together would be too large, see `whole`.
+        together would be too large, see `uncompressed_bytes`.
         """
         with self.lock:
             before = self.state_at(list(self._tracks), start_ns - 1)
             came = [(name, *item) for name, track in self._tracks.items() for item in track.between(start_ns, end_ns)]
-            after = [(name, item[2]) for name, track in self._tracks.items() for item in track.still_at(end_ns)]
+            after = [(name, item[2]) for name, track in self._tracks.items() for item in track.repeated_until(end_ns)]
         came.sort(key=lambda item: item[2])
         return [
             *((name, start_ns, data) for name, _, data in before),
@@ -477,10 +481,10 @@ class History:
         if best is None:
             return None
         (stamp, found, data), name = best
-        return found, (name, stamp, whole(data))
+        return found, (name, stamp, uncompressed_bytes(data))
 
 
-class _Onward(Iterator[Recorded]):
+class _LiveIterator(Iterator[Recorded]):
     """Iterates over messages in the order of their times; after its end, it continues when new messages arrive."""
 
     def __init__(self, history: History, topics: Collection[str], start_ns: int) -> None:

@@ -26,7 +26,7 @@ _MAGIC = b"\x28\xb5\x2f\xfd"
 """The first bytes of zstd's format (RFC 8878); messages begin with a zero."""
 
 
-def unpacked(path: Path, folder: Path) -> Path:
+def decompress_file(path: Path, folder: Path) -> Path:
     """Decompress a file into a folder and return the path; of a truncated file, decompress the available part.
 
     Raises:

@@ -68,7 +68,7 @@ class PlayerServices:
         return response
 
     def _play(self, _: Any, response: Any) -> Any:
-        """Refuse to play, as rosbag2 does while it plays; when it does not, the program has ended."""
+        """Refuse to play, as rosbag2 does while it is playing; once playing ends, the program ends too."""
         self._logger.warning("The recording is already playing: the request is ignored")
         response.success = False
         return response

@@ -41,7 +41,7 @@ def make_publishers(
     return made
 
 
-def untyped(bag: BagReader) -> list[Diagnostic]:
+def missing_type_findings(bag: BagReader) -> list[Diagnostic]:
     """Return the diagnostic BAG114 for topics that cannot be played because the definition of their type is missing."""
     names = [f"{topic.name} ({topic.type_name})" for topic in bag.topics if not _is_known(topic.type_name)]
     if not names:

@@ -13,8 +13,8 @@ from linkwright.bag.moments import Moments
 from linkwright.bag.names import METADATA, PACKED, Recorded, are_of_one_recording, storage_of
 from linkwright.bag.qos import from_bag
 from linkwright.bag.scratch import scratch_folder
-from linkwright.bag.unfinished import is_unfinished, made_readable
-from linkwright.bag.unreadable import verdict_on
+from linkwright.bag.unfinished import is_unfinished, make_readable
+from linkwright.bag.unreadable import diagnose
 from linkwright.diagnostics import (
     Diagnostic,
     LinkwrightError,
@@ -121,7 +121,7 @@ class BagReader:
             return self._opened_one(targets[0], self.path, self._called)
         from linkwright.bag.several import SeveralReader
 
-        # A recorder that was killed at the beginning of a file leaves an empty one.
+        # A recorder that is killed at the beginning of a file leaves it empty.
         whole = [target for target in targets if target.stat().st_size] or targets
         self._is_cut_off = len(whole) < len(targets)
         return SeveralReader([self._opened_one(path, path, path.name) for path in whole])
@@ -139,7 +139,7 @@ class BagReader:
                 from linkwright.bag.packed import unpack_messages
 
                 unpack_messages(reader)
-        except Exception as error:  # the library raises whatever a damaged file brings about
+        except Exception as error:  # a damaged file can make the library raise any exception
             raise _unreadable(path, called, error) from error
         return reader
 
@@ -149,14 +149,14 @@ class BagReader:
         It is the path, or its file with missing parts added and refused parts removed.
         """
         if target.is_file() and target.suffix == PACKED:
-            from linkwright.bag.packed import unpacked
+            from linkwright.bag.packed import decompress_file
 
-            target = unpacked(target, Path(self._open.enter_context(scratch_folder())))
+            target = decompress_file(target, Path(self._open.enter_context(scratch_folder())))
         files = sorted(target.glob("*.mcap")) if target.is_dir() else [target]
         if len(files) != 1 or files[0].suffix != ".mcap":
             return target
         self._is_cut_off = self._is_cut_off or is_unfinished(files[0])
-        return made_readable(files[0]) or target
+        return make_readable(files[0]) or target
 
     def _make_types_known(self) -> None:
         from rosbags.interfaces import MessageDefinitionFormat
@@ -289,7 +289,7 @@ class BagReader:
     def _look(self, what: Callable[[], T]) -> T:
         try:
             return what()
-        except Exception as error:  # the library raises whatever a damaged file brings about
+        except Exception as error:  # a damaged file can make the library raise any exception
             raise _unreadable(self.path, self._called, error) from error
 
     def _read(self, stream: Iterator[tuple[Any, int, bytes]]) -> Iterator[Recorded]:
@@ -395,7 +395,7 @@ def _profiles(connection: Any) -> list[Any]:
 
 
 def _unreadable(path: Path, called: str, error: Exception) -> LinkwrightError:
-    reason, hint, note = verdict_on(path, error)
+    reason, hint, note = diagnose(path, error)
     return LinkwrightError(
         Diagnostic(
             "BAG102",

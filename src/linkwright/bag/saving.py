@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.bag.history import whole
+from linkwright.bag.history import uncompressed_bytes
 from linkwright.bag.names import Recorded
 from linkwright.bag.writing import BagWriter
 from linkwright.graph import QoSProfile
@@ -49,7 +49,7 @@ def save_messages(
         for number, (name, stamp_ns, data) in enumerate(messages):
             if name not in writer.topics:
                 writer.add_topic(name, topics[name].type_name, topics[name].offered)
-            writer.write(name, stamp_ns, whole(data))
+            writer.write(name, stamp_ns, uncompressed_bytes(data))
             if number % _PROGRESS_STEP == 0:
                 on_progress(number / len(messages))
 

@@ -58,7 +58,7 @@ def has_index(path: Path) -> bool:
     return bool(FOOTER_BODY.unpack_from(footer, HEAD.size)[0])
 
 
-def made_readable(path: Path) -> ReadableFile | None:
+def make_readable(path: Path) -> ReadableFile | None:
     """Return a file in a form that the library can read; None if the library can read the file itself."""
     if not is_unfinished(path) and has_index(path):
         patches = patches_of(path)
@@ -190,7 +190,7 @@ def _summary_of(scan: _Scan, file: BinaryIO) -> bytes:
     made = bytearray()
     for chunk in scan.chunks:
         if not chunk.indexes or not scan.channels.keys() >= chunk.indexes.keys():
-            _look_into(file, chunk, scan, made)
+            _scan_chunk(file, chunk, scan, made)
     return _tail(scan, bytes(made))
 
 
@@ -230,7 +230,7 @@ def _chunk(file: BinaryIO, offset: int, length: int) -> _Chunk:
     return _Chunk(offset, length, start_ns, end_ns, compression, compressed, size, indexes_end=offset + length)
 
 
-def _look_into(file: BinaryIO, chunk: _Chunk, scan: _Scan, made: bytearray) -> None:
+def _scan_chunk(file: BinaryIO, chunk: _Chunk, scan: _Scan, made: bytearray) -> None:
     """Read the schemas and channels in a chunk, and index its messages if the file lacks the index."""
     from rosbags.rosbag2.storage_mcap import decompress
 

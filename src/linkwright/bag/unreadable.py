@@ -23,7 +23,7 @@ class Verdict(NamedTuple):
     note: Phrase | None = None
 
 
-def verdict_on(path: Path, error: Exception) -> Verdict:
+def diagnose(path: Path, error: Exception) -> Verdict:
     """Find out why a recording cannot be read.
 
     Args:
@@ -43,7 +43,7 @@ def verdict_on(path: Path, error: Exception) -> Verdict:
         head = None
     reason = foreign(str(error).strip().rstrip(".") or type(error).__name__)
     if head is not None and (found := _by_its_beginning(path, head)) is not None:
-        is_mcap = head.startswith(_MCAP)  # the library knows what is wrong with an MCAP file
+        is_mcap = head.startswith(_MCAP)  # the library reports what is wrong with an MCAP file
         return found._replace(note=phrase("the reader reports: {words}", words=reason)) if is_mcap else found
     return Verdict(reason, None)
 

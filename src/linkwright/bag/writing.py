@@ -276,7 +276,7 @@ class BagWriter:
         self.on_split(str(closed.path), str(self._part.path))
 
     def _ended(self, error: Exception) -> LinkwrightError:
-        """The error when the disk refuses something; nothing more is written then."""
+        """Return the error for a refusal of the disk, and stop writing."""
         unfinished.unregister_finished(self)
         part, self._part = self._part, None
         with contextlib.suppress(*_REFUSALS):  # the disk refuses to write the buffer again

@@ -105,9 +105,9 @@ async def _carry(first: Side, second: Side, directions: tuple[Direction, Directi
 
 
 def _relevant(log: LogSink) -> LogSink:
-    """Return a sink that drops the log of mirrored nodes.
+    """Return a sink that drops messages of mirrored nodes, except errors.
 
-    They would warn of a quality of service that they did not choose.
+    Mirrored nodes warn of a quality of service that they did not choose.
     """
 
     def take(record: LogRecord) -> None:

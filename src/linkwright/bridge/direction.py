@@ -9,7 +9,7 @@ from typing import NamedTuple
 from linkwright.bridge.filters import NameFilter
 from linkwright.bridge.mirrors import MATCHED_WITHIN, MirroredPublisher, MirroredService, Tap
 from linkwright.bridge.side import Side, provision_of
-from linkwright.bridge.streams import Stream, awaited_streams, can_hear, hash_of, stream_of
+from linkwright.bridge.streams import Stream, awaited_streams, can_receive, hash_of, stream_of
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo, Presence
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.loop.node_handle import NodeHandle
@@ -142,7 +142,7 @@ class Direction:
         """Return whether a subscription in the target can receive from a publisher that is carried."""
         return any(
             publisher.info.name == subscription.name
-            and can_hear(subscription, publisher.info, keyed=self._target.needs_hashes)
+            and can_receive(subscription, publisher.info, keyed=self._target.needs_hashes)
             for publisher in self._publishers.values()
         )
 
@@ -224,7 +224,7 @@ class Direction:
     def _is_expected(self, publisher: EndpointInfo) -> bool:
         """Return whether a subscription in the target can receive from a publisher."""
         demanding = self._target.seen.demanded.get(publisher.name, ())
-        return any(can_hear(endpoint, publisher, keyed=self._target.needs_hashes) for endpoint in demanding)
+        return any(can_receive(endpoint, publisher, keyed=self._target.needs_hashes) for endpoint in demanding)
 
     def _can_carry(self, info: EndpointInfo) -> bool:
         """Return whether a topic or service with this type can be created in the target; if not, warn once."""

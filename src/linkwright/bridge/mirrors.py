@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any
 
 from linkwright.bridge.outlet import Outlet
-from linkwright.bridge.streams import KEPT, Stream, offered
+from linkwright.bridge.streams import KEPT, Stream, offered_profile
 from linkwright.graph.endpoints.base import EndpointInfo, MessageInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Client, Service
@@ -80,7 +80,7 @@ class MirroredPublisher:
     def __init__(self, node: NodeHandle, info: EndpointInfo, stream: Stream) -> None:
         self.info = info
         self.stream = stream
-        publisher: Publisher[Any] = Publisher(node, info.type_name, info.name, offered(info.qos))
+        publisher: Publisher[Any] = Publisher(node, info.type_name, info.name, offered_profile(info.qos))
         publisher.type_hash = info.type_hash
         publisher.raw = True
         self._waiting: deque[bytes] | None = deque(maxlen=KEPT)
@@ -96,7 +96,7 @@ class MirroredPublisher:
         return self._publisher.gid
 
     def listeners(self) -> int:
-        """The number of matching subscriptions of others, other bridges included."""
+        """Return the number of matching subscriptions of other nodes, including other bridges."""
         return self._publisher.get_subscription_count() - len(self._publisher.local_subscriptions())
 
     @property

@@ -47,8 +47,8 @@ def _open_zenoh(domain_id: int | None, _bridge_id: str, logger: Logger) -> Backg
 
 
 _KINDS = {
-    "dds": _Kind("DDS", dds.why_not, _open_dds, needs_hashes=False),
-    "zenoh": _Kind("Zenoh", zenoh.why_not, _open_zenoh, needs_hashes=True),
+    "dds": _Kind("DDS", dds.unavailable_reason, _open_dds, needs_hashes=False),
+    "zenoh": _Kind("Zenoh", zenoh.unavailable_reason, _open_zenoh, needs_hashes=True),
 }
 
 

@@ -21,7 +21,7 @@ Provision = tuple[str, EndpointKind, str, str]
 
 
 @dataclass
-class Seen:
+class Snapshot:
     """A snapshot of the nodes and endpoints of a network, without those of bridges.
 
     Attributes:
@@ -63,7 +63,7 @@ class Side:
         self._transport = transport
         self._bridge_id = bridge_id
         self._enclave = f"{ENCLAVE}/{bridge_id}"
-        self.seen = Seen()
+        self.seen = Snapshot()
         self.own = self.open_node(NodeIdentity(f"linkwright_bridge_{bridge_id}", "/"))
 
     async def join(self, seconds: float) -> None:
@@ -96,7 +96,7 @@ class Side:
 
     def update(self) -> None:
         """Update the snapshot `seen`."""
-        seen = Seen()
+        seen = Snapshot()
         for node in self._transport.remote_nodes():
             other = _bridge_of(node)
             if not other:

@@ -55,7 +55,7 @@ def stream_of(publisher: EndpointInfo, *, keyed: bool) -> Stream:
         keyed: whether topics are separated by the hash of their type, and endpoints are not separated by quality of
             service, as over Zenoh.
     """
-    qos = offered(publisher.qos)
+    qos = offered_profile(publisher.qos)
     reliability = ReliabilityPolicy.RELIABLE if keyed else qos.reliability
     return _stream(publisher, reliability, qos.durability, qos.history, keyed=keyed)
 
@@ -77,7 +77,7 @@ def awaited_streams(subscription: EndpointInfo, *, keyed: bool) -> set[Stream]:
     return found
 
 
-def can_hear(subscription: EndpointInfo, publisher: EndpointInfo, *, keyed: bool) -> bool:
+def can_receive(subscription: EndpointInfo, publisher: EndpointInfo, *, keyed: bool) -> bool:
     """Return whether a subscription can receive from the mirror of a publisher of its topic.
 
     Args:
@@ -89,7 +89,7 @@ def can_hear(subscription: EndpointInfo, publisher: EndpointInfo, *, keyed: bool
         return False
     if keyed:
         return len({hash_of(subscription), hash_of(publisher)} - {""}) <= 1
-    return not incompatible_policies(offered(publisher.qos), subscription.qos)
+    return not incompatible_policies(offered_profile(publisher.qos), subscription.qos)
 
 
 def hash_of(endpoint: EndpointInfo) -> str:
@@ -117,7 +117,7 @@ def _stream(
     return Stream(endpoint.name, endpoint.type_name, hashed, reliability, durability, history)
 
 
-def offered(qos: QoSProfile) -> QoSProfile:
+def offered_profile(qos: QoSProfile) -> QoSProfile:
     """Return the profile that a publisher offers, with ROS's defaults for values that discovery does not provide."""
     lasts = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
     keeps_all = qos.history is HistoryPolicy.KEEP_ALL

@@ -71,10 +71,10 @@ def run(arguments: argparse.Namespace) -> int:
     if "run_verb" in arguments:
         return run_nested(arguments)
     from linkwright.doctor import examine, examine_parameter_files, observe, report
-    from linkwright.wire.unfollowed import new_unfollowed_settings
+    from linkwright.wire.unfollowed import new_unsupported_settings
 
     frames = _fixed_frames(arguments)
-    settings = new_unfollowed_settings()  # reported with the other findings, not when joining the graph
+    settings = new_unsupported_settings()  # reported with the other findings, not when joining the graph
 
     async def job(session: Session) -> int:
         if arguments.format == "text":

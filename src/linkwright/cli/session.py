@@ -259,7 +259,7 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
         LinkwrightError: CLI401, neither DDS nor Zenoh is available; DDS101, ROS_DOMAIN_ID is not a domain; DDS111, a
             setting of Zenoh is malformed; DDS121, security is enforced; DDS102, DDS112, the domain cannot be joined.
     """
-    from linkwright.wire.joining import available, check_settings, join, why_not
+    from linkwright.wire.joining import available, check_settings, join, unavailable_reason
 
     if available():
         check_settings()  # raise the errors that joining would only log
@@ -269,7 +269,7 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
             Diagnostic(
                 "CLI401",
                 phrase("the nodes of other processes cannot be reached without DDS or Zenoh"),
-                notes=(Note(why_not()),),
+                notes=(Note(unavailable_reason()),),
                 hint=phrase("unset LINKWRIGHT_DDS") if os.environ.get("LINKWRIGHT_DDS") else None,
             )
         )

@@ -108,11 +108,11 @@ def _platform() -> list[tuple[str, str]]:
 
 
 def _middleware() -> str:
-    from linkwright.wire.joining import available, middleware, why_not
+    from linkwright.wire.joining import available, middleware, unavailable_reason
     from linkwright.wire.unfollowed import ZENOH
 
     if not available():
-        return f"none: {why_not()}"
+        return f"none: {unavailable_reason()}"
     return (
         "Eclipse Zenoh (as rmw_zenoh_cpp)" if middleware() == ZENOH else "Eclipse Cyclone DDS (as rmw_cyclonedds_cpp)"
     )

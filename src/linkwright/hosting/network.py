@@ -68,14 +68,14 @@ class Network:
         graph = self._graph
         if graph is None or graph.closed:
             return
-        from linkwright.wire.joining import available, join, why_not
+        from linkwright.wire.joining import available, join, unavailable_reason
 
         if available():
             transport = join(graph)
             self.domain_id = None if transport is None else transport.domain_id
         elif self._session.has_processes:
             self._session.log.warning_line(
-                "launch", f"the nodes in this process and those in others cannot see each other: {why_not()}"
+                "launch", f"the nodes in this process and those in others cannot see each other: {unavailable_reason()}"
             )
 
 

@@ -28,7 +28,7 @@ from linkwright.messages.definitions.interfaces import (
     python_module,
     send_goal_of,
 )
-from linkwright.messages.definitions.library import LIBRARY, not_of_kind
+from linkwright.messages.definitions.library import LIBRARY, wrong_kind_diagnostic
 from linkwright.messages.errors import InterfaceNotFoundError
 from linkwright.messages.message import ActionImplementation, ActionType, DurationValue, Message, ServiceType, TimeValue
 
@@ -285,7 +285,7 @@ def _named(name: str, base: type, kind: str) -> type[Any]:
         # Parts of services and actions have the kind in their names: a message may be 'std_srvs/srv/SetBool_Request'.
         found = _made(LIBRARY.definition(name, *(() if name.count("/") == 2 else (kind,))))
     if not issubclass(found, base):
-        raise InterfaceNotFoundError(not_of_kind(LIBRARY.definition(name), kind))
+        raise InterfaceNotFoundError(wrong_kind_diagnostic(LIBRARY.definition(name), kind))
     return cast("type[Any]", found)
 
 

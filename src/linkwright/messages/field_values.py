@@ -206,9 +206,9 @@ def _described(kind: FieldType) -> Phrase:
     if primitive is not None and primitive.is_integer:
         one = phrase("{one}, {low} to {high}", one=one, low=primitive.low, high=primitive.high)
     if kind.container is Container.ARRAY:
-        return phrase("a list of {size} ({spelled})", size=kind.size, spelled=kind.spelled())
+        return phrase("a list of {size} ({spelled})", size=kind.size, spelled=kind.to_msg_text())
     if kind.container is Container.SEQUENCE:
-        return phrase("a list ({spelled})", spelled=kind.spelled())
+        return phrase("a list ({spelled})", spelled=kind.to_msg_text())
     return one
 
 

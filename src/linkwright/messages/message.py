@@ -73,7 +73,7 @@ class Message:
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:
         """Return the fields' names and types, such as ``{'position': 'sequence<double>'}``."""
-        return {field.name: field.type.described() for field in cls._definition.fields}
+        return {field.name: field.type.to_idl_text() for field in cls._definition.fields}
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, self.__class__):

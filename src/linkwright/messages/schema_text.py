@@ -42,7 +42,7 @@ def _text(type_name: str) -> str:
     for field in definition_of(get_message(type_name)).fields:
         base = field.type.base
         package, _, name = base.rpartition("/")
-        spelled = field.type.spelled()
+        spelled = field.type.to_msg_text()
         if "/srv" in package:  # names of messages have two parts here, so the kind would be lost
             spelled = spelled.replace(f"{package.partition('/')[0]}/{name}", base, 1)
         lines.append(f"{spelled} {field.name}")

@@ -31,7 +31,7 @@ class ZenohRouter(SingleNode):
                 Diagnostic("NODE003", phrase("the Zenoh router needs the Zenoh library"), hint=install_hint("zenoh"))
             )
         from linkwright.wire.zenoh.opening import ObstacleReporter
-        from linkwright.wire.zenoh.reaching import asked_for
+        from linkwright.wire.zenoh.reaching import configured_addresses
         from linkwright.wire.zenoh.session import close_session, configuration, listening_at, open_with
         from linkwright.wire.zenoh.settings import read_router_settings
 
@@ -45,7 +45,7 @@ class ZenohRouter(SingleNode):
         logger = self._node.get_logger()
         logger.info(f"Zenoh router at {', '.join(listening_at(config))}")
         self._reporter = ObstacleReporter(config, self._warn, lambda: bool(self._session.info.routers_zid()))
-        if asked_for(config):
+        if configured_addresses(config):
             self._reporter.start()
 
     def _warn(self, reasons: str) -> None:

@@ -215,7 +215,7 @@ class TimelineFeature(PageFeature):
 
     def attach(self, playback: Playback, bag: BagReader) -> None:
         """Show pages a recording; `failed` is to be called if it cannot be read."""
-        from linkwright.bag.publishing import untyped
+        from linkwright.bag.publishing import missing_type_findings
 
         counts = bag.counts(_PARTS)
         topics = [TimelineTopic(at.name, at.type_name, at.count, counts.get(at.name, [])) for at in bag.topics]
@@ -229,7 +229,7 @@ class TimelineFeature(PageFeature):
             topics,
             live=False,
         )
-        if findings := [*bag.findings, *untyped(bag)]:
+        if findings := [*bag.findings, *missing_type_findings(bag)]:
             self._problem = in_one_line(findings)
         self._recorded = playback
         playback.on_reset = self._reset

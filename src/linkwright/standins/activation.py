@@ -25,8 +25,8 @@ def activate() -> None:
     modules.install()
     if modules.FOLDER not in sys.path:
         sys.path.append(modules.FOLDER)
-    if not any(isinstance(finder, _InterfacesWhenAsked) for finder in sys.meta_path):
-        sys.meta_path += [_ModulesOfWorkspace(), _InterfacesWhenAsked()]
+    if not any(isinstance(finder, _LazyInterfaceFinder) for finder in sys.meta_path):
+        sys.meta_path += [_ModulesOfWorkspace(), _LazyInterfaceFinder()]
     _provide_for_processes()
     missing = [name for name in LAUNCH_MODULES if not modules.is_ours(sys.modules.get(name))]
     if not missing:
@@ -41,7 +41,7 @@ def activate() -> None:
         sys.path.remove(modules.FOLDER)
 
 
-class _InterfacesWhenAsked:
+class _LazyInterfaceFinder:
     """Makes modules such as ``std_msgs.msg`` importable on the first import that no other finder resolves.
 
     It implements the finder method without the base class, which is slow to import.
@@ -77,7 +77,7 @@ class _ModulesOfWorkspace:
         from linkwright.packages.active import active_finder
 
         finder = active_finder()
-        asking = None if finder is None or path is not None else _asking_file()
+        asking = None if finder is None or path is not None else _importing_file()
         if finder is None or asking is None:
             return None
         from linkwright.packages.programs.python_modules import find_module
@@ -85,7 +85,7 @@ class _ModulesOfWorkspace:
         return find_module(finder, fullname, asking.parent)
 
 
-def _asking_file() -> Path | None:
+def _importing_file() -> Path | None:
     """Return the user's file that runs the current import; None for a library, whose import may be optional."""
     from linkwright.packages.programs.code_files import is_users
 

@@ -14,7 +14,7 @@ from linkwright.standins.image_encodings import (
     DEPTHS,
     NUMPY_NAMES,
     ConversionError,
-    converted,
+    convert_image,
     depth_and_channels,
     encoding,
 )
@@ -182,7 +182,7 @@ class CvBridge:
         if wanted == "passthrough":
             return image
         try:
-            return converted(image, source, wanted)
+            return convert_image(image, source, wanted)
         except ConversionError as error:
             raise CvBridgeError(error) from error
 

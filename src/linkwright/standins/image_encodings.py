@@ -76,7 +76,7 @@ def depth_and_channels(cv_type: int) -> tuple[str, int]:
     return DEPTHS[cv_type & ((1 << _CHANNEL_SHIFT) - 1)], (cv_type >> _CHANNEL_SHIFT) + 1
 
 
-def converted(image: NDArray[Any], source: str, wanted: str) -> NDArray[Any]:
+def convert_image(image: NDArray[Any], source: str, wanted: str) -> NDArray[Any]:
     """Return a copy of an image in another encoding.
 
     Args:
@@ -95,10 +95,10 @@ def converted(image: NDArray[Any], source: str, wanted: str) -> NDArray[Any]:
     if not to.order:
         if of.channels != to.channels:
             raise ConversionError(f"[{source}] and [{wanted}] do not have the same number of channels")
-        return _in_depth(image, of, to)
+        return _convert_depth(image, of, to)
     if to.order not in _CHANNELS:
         raise ConversionError(f"Unsupported conversion from [{source}] to [{wanted}]")
-    return _in_depth(_in_order(image, of, to.order), of, to)
+    return _convert_depth(_in_order(image, of, to.order), of, to)
 
 
 def _in_order(image: NDArray[Any], of: Encoding, order: str) -> NDArray[Any]:
@@ -108,7 +108,7 @@ def _in_order(image: NDArray[Any], of: Encoding, order: str) -> NDArray[Any]:
     if of.order == "mono":
         channels = [image] * 3
     else:
-        image = _as_colours(image, of)
+        image = _to_rgb(image, of)
         reversed_ = of.order.startswith("bgr")
         channels = [image[..., index] for index in ((2, 1, 0) if reversed_ else (0, 1, 2))]
     if order == "mono":
@@ -123,7 +123,7 @@ def _in_order(image: NDArray[Any], of: Encoding, order: str) -> NDArray[Any]:
     return np.stack(channels, axis=-1)
 
 
-def _as_colours(image: NDArray[Any], of: Encoding) -> NDArray[Any]:
+def _to_rgb(image: NDArray[Any], of: Encoding) -> NDArray[Any]:
     """Return an image in a Bayer or YUV encoding as RGB; other images are returned unchanged."""
     if of.order.startswith("bayer_"):
         if of.depth != "8U":
@@ -134,7 +134,7 @@ def _as_colours(image: NDArray[Any], of: Encoding) -> NDArray[Any]:
     return image
 
 
-def _in_depth(image: NDArray[Any], of: Encoding, to: Encoding) -> NDArray[Any]:
+def _convert_depth(image: NDArray[Any], of: Encoding, to: Encoding) -> NDArray[Any]:
     """Return an image converted to another depth; black and white are preserved between unsigned 8 and 16 bits."""
     dtype = np.dtype(NUMPY_NAMES[DEPTHS.index(to.depth)])
     if image.dtype == dtype:

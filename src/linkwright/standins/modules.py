@@ -86,7 +86,7 @@ class _Loader:
 
     def homes(self, name: str) -> list[str]:
         """Return the modules that have a name, for the error message of a module that lacks it."""
-        return table.homes(name)
+        return table.modules_providing(name)
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:
         """Return None, so that Python creates its default module."""

@@ -103,7 +103,7 @@ def find(module: str) -> Module | None:
     return read(module.partition(".")[0]).get(module)
 
 
-def homes(name: str) -> list[str]:
+def modules_providing(name: str) -> list[str]:
     """Return the modules from which a name can be imported, one for each package, such as rclpy.node for Node."""
     found: dict[str, str] = {}
     for package in packages():

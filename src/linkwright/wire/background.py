@@ -36,7 +36,7 @@ _CLOSED_WITHIN = 0.05
 """Seconds after which a waiting thread notices that the domain was left."""
 
 
-class Departed(Protocol):
+class DepartureJudge(Protocol):
     """Judges how remote publishers left."""
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
@@ -64,7 +64,7 @@ class BackgroundTransport(ABC):
         self,
         domain_id: int,
         outside: Outside,
-        departures: Departed,
+        departures: DepartureJudge,
         logger: Logger,
         *,
         only_looks: bool = False,

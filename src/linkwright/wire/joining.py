@@ -16,7 +16,7 @@ from linkwright.diagnostics import Phrase, install_hint, phrase, render
 from linkwright.wire import dds, zenoh
 from linkwright.wire.background import log_alone
 from linkwright.wire.switch import is_switched_off
-from linkwright.wire.unfollowed import CYCLONE, MIDDLEWARE, ZENOH, new_unfollowed_settings, refuse_enforced_security
+from linkwright.wire.unfollowed import CYCLONE, MIDDLEWARE, ZENOH, new_unsupported_settings, refuse_enforced_security
 from linkwright.wire.zenoh.joining import is_installed as zenoh_is_installed
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def middleware(environment: Mapping[str, str] | None = None) -> str:
     return ZENOH if find_spec("cyclonedds") is None and zenoh_is_installed() else CYCLONE
 
 
-def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
+def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
     """Return the reason why this process does not communicate with others; empty if it does.
 
     Args:
@@ -47,8 +47,8 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
     """
     variables = os.environ if environment is None else environment
     if middleware(variables) == ZENOH:
-        return zenoh.why_not(variables)
-    reason = dds.why_not(variables)
+        return zenoh.unavailable_reason(variables)
+    reason = dds.unavailable_reason(variables)
     if reason and find_spec("cyclonedds") is None and not variables.get(MIDDLEWARE, "").strip():
         return phrase(
             "neither DDS nor Zenoh is installed: {hint}, or with 'dds' in place of 'zenoh' for DDS, the "
@@ -64,7 +64,7 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
 
 def available(environment: Mapping[str, str] | None = None) -> bool:
     """Return whether other processes can be reached."""
-    return not why_not(environment)
+    return not unavailable_reason(environment)
 
 
 def check_security(environment: Mapping[str, str] | None = None) -> None:
@@ -111,12 +111,12 @@ def join(graph: Graph, **options: Unpack[JoinOptions]) -> BackgroundTransport | 
     """
     environment = options.get("environment")
     check_security(environment)
-    reason = why_not(environment)
+    reason = unavailable_reason(environment)
     if reason:
         if not is_switched_off(environment):
             log_alone(graph.get_logger("wire"), reason)
         return None
-    for finding in new_unfollowed_settings(environment):
+    for finding in new_unsupported_settings(environment):
         graph.get_logger("wire").warning(render(finding))
     chosen = zenoh.join if middleware(environment) == ZENOH else dds.join
     return chosen(graph, **options)

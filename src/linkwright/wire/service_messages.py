@@ -14,7 +14,7 @@ from linkwright.graph.endpoints.service import RequestId
 from linkwright.messages import deserialize, serialize
 
 
-def hand_request_on(body: bytes, service: Any, reply: Callable[[Any], None], request_id: RequestId) -> bool:
+def forward_request(body: bytes, service: Any, reply: Callable[[Any], None], request_id: RequestId) -> bool:
     """Pass a request to a service.
 
     Args:
@@ -36,7 +36,7 @@ def hand_request_on(body: bytes, service: Any, reply: Callable[[Any], None], req
     return request is not None
 
 
-def hand_response_on(body: bytes, client: Any, answer: Callable[[Any], None]) -> None:
+def forward_response(body: bytes, client: Any, answer: Callable[[Any], None]) -> None:
     """Pass a response to the caller that waits for it; a response that cannot be read is logged.
 
     Args:
@@ -63,6 +63,6 @@ def _read_or_warn(body: bytes, half: Literal["Request", "Response"], endpoint: A
         return None
 
 
-def written(message: Any) -> bytes:
+def to_cdr(message: Any) -> bytes:
     """Return the CDR of a request or response, with its header; bytes are returned unchanged."""
     return message if type(message) is bytes else serialize(message)

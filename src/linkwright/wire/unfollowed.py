@@ -56,7 +56,7 @@ def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> No
         )
 
 
-def unfollowed_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
+def unsupported_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
     """Return a warning for each setting that is not supported.
 
     Args:
@@ -110,9 +110,9 @@ def unfollowed_settings(environment: Mapping[str, str] | None = None) -> list[Di
     return found
 
 
-def new_unfollowed_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
-    """Return the `unfollowed_settings` not yet returned in this process, so that each is reported once."""
-    found = [setting for setting in unfollowed_settings(environment) if setting.code not in _reported]
+def new_unsupported_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
+    """Return the `unsupported_settings` not yet returned in this process, so that each is reported once."""
+    found = [setting for setting in unsupported_settings(environment) if setting.code not in _reported]
     _reported.update(diagnostic.code for diagnostic in found)
     return found
 

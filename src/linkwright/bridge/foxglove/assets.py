@@ -31,7 +31,7 @@ class Assets:
         self._finder = finder
         self._packages: set[str] = set()
 
-    def described(self, text: str) -> None:
+    def allow_packages_of(self, text: str) -> None:
         """Allow the packages that a robot description names."""
         self._packages.update(_PACKAGE.findall(text))
 

@@ -100,7 +100,10 @@ class FoxgloveBridge(SingleNode):
         node = self._node
         graph.watch(self._graph_changed)
         node.create_subscription(
-            String, "/robot_description", lambda message: self._offer.assets.described(message.data), DESCRIPTION_QOS
+            String,
+            "/robot_description",
+            lambda message: self._offer.assets.allow_packages_of(message.data),
+            DESCRIPTION_QOS,
         )
         node.create_subscription(
             "rcl_interfaces/msg/ParameterEvent", "/parameter_events", self._parameters_changed, 100
@@ -108,8 +111,8 @@ class FoxgloveBridge(SingleNode):
         if node.get_parameter("use_sim_time").value:
             self._capabilities.append("time")
             node.create_subscription("rosgraph_msgs/msg/Clock", "/clock", self._ticked, 10)
-        self._offer.channels.look()
-        self._offer.services.look()
+        self._offer.channels.poll_changes()
+        self._offer.services.poll_changes()
 
     def _graph_changed(self) -> None:
         with suppress(RuntimeError):  # the event loop is closed
@@ -121,8 +124,8 @@ class FoxgloveBridge(SingleNode):
 
     def _look(self) -> None:
         self._look_due = None
-        channels, gone = self._offer.channels.look()
-        services, ended = self._offer.services.look()
+        channels, gone = self._offer.channels.poll_changes()
+        services, ended = self._offer.services.poll_changes()
         messages: list[dict[str, Any]] = []
         if gone:
             messages.append({"op": "unadvertise", "channelIds": gone})

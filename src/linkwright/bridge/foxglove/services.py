@@ -64,7 +64,7 @@ class Services:
         """Return the currently available services."""
         return list(self._offered.values())
 
-    def look(self) -> tuple[list[OfferedService], list[int]]:
+    def poll_changes(self) -> tuple[list[OfferedService], list[int]]:
         """Return the services added since the last call, and the ids of the removed ones."""
         there = {
             (endpoint.name, endpoint.type_name)

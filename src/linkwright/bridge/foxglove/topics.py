@@ -63,7 +63,7 @@ class Channels:
         """Return the channel with an id, or None."""
         return next((channel for channel in self._channels.values() if channel.number == number), None)
 
-    def look(self) -> tuple[list[Channel], list[int]]:
+    def poll_changes(self) -> tuple[list[Channel], list[int]]:
         """Return the channels added since the last call, and the ids of the removed ones."""
         there = {
             (endpoint.name, endpoint.type_name)

@@ -181,12 +181,12 @@ def truncated() -> None:
 
 
 def unterminated() -> None:
-    """The error for a text without NUL at its end."""
+    """Raise the error for a string without NUL at its end."""
     raise DataFaultError(phrase("the end of a string does not match its length"))
 
 
 def bad_bool(value: int) -> None:
-    """The error for a bool that is neither 0 nor 1."""
+    """Raise the error for a bool that is neither 0 nor 1."""
     raise DataFaultError(phrase("a bool has the value {value}", value=value))
 
 

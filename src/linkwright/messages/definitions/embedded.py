@@ -39,4 +39,4 @@ def _add(language: str, name: str, text: str, origin: str) -> None:
     if split is None or split.kind not in (None, "msg") or not text.strip():
         return
     type_name = f"{split.package}/msg/{split.name}"
-    LIBRARY.carry(type_name, SourceText(f"{origin}/{type_name}.{language.lower()}", text))
+    LIBRARY.add_text(type_name, SourceText(f"{origin}/{type_name}.{language.lower()}", text))

@@ -179,7 +179,7 @@ class FieldType(NamedTuple):
         primitive = self.primitive
         return self.container is not Container.ONE and primitive is not None and primitive.array_code is not None
 
-    def spelled(self, package: str | None = None) -> str:
+    def to_msg_text(self, package: str | None = None) -> str:
         """Return the type as in a ``.msg`` file of `package`, such as ``geometry_msgs/Point[<=3]``."""
         text = self.base
         if "/" in text:
@@ -193,7 +193,7 @@ class FieldType(NamedTuple):
             text += "[]" if self.size is None else f"[<={self.size}]"
         return text
 
-    def described(self) -> str:
+    def to_idl_text(self) -> str:
         """Return the type as in ``get_fields_and_field_types``: ``sequence<double, 3>``, ``geometry_msgs/Point[3]``."""
         primitive = self.primitive
         if primitive is not None:

@@ -103,7 +103,7 @@ class Library:
         package, kind, part = type_name.split("/")
         return self._sources[f"{package}/{kind}/{part.partition('_')[0]}"]
 
-    def carry(self, type_name: str, source: SourceText) -> None:
+    def add_text(self, type_name: str, source: SourceText) -> None:
         """Register the text of a message definition contained in data; the first text for a name is kept.
 
         Args:
@@ -157,7 +157,7 @@ class Library:
         if source is None:
             return None
         shipped = source.name[:1] == "<"
-        definition = _parsed(source, base, _Trusted() if shipped else self)
+        definition = _parse_source(source, base, _Trusted() if shipped else self)
         self._sources[base] = source
         parts = parts_of(definition)
         self._definitions.update(parts)
@@ -286,7 +286,7 @@ class _Trusted:
         return None
 
 
-def _parsed(source: SourceText, base: str, known: KnownMessages) -> Definition:
+def _parse_source(source: SourceText, base: str, known: KnownMessages) -> Definition:
     """Parse an interface file in either of the two languages."""
     if source.name.endswith(".idl"):
         from linkwright.messages.definitions.idl import parse_idl
@@ -295,7 +295,7 @@ def _parsed(source: SourceText, base: str, known: KnownMessages) -> Definition:
     return parse_interface(source, base, known)
 
 
-def not_of_kind(definition: Definition, kind: str) -> Diagnostic:
+def wrong_kind_diagnostic(definition: Definition, kind: str) -> Diagnostic:
     """Return a diagnostic for an interface that is not of the requested kind (message, service, action)."""
     name = definition.type_name
     is_a = {Structure: phrase("a message"), Service: phrase("a service"), Action: phrase("an action")}[type(definition)]

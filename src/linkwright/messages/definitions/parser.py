@@ -43,19 +43,21 @@ def read_default(text: str, kind: FieldType) -> object:
     """
     primitive = kind.primitive
     if primitive is None:
-        raise LiteralFault(phrase("a field of type '{spelled}' cannot have a default value", spelled=kind.spelled()))
+        raise LiteralFault(
+            phrase("a field of type '{spelled}' cannot have a default value", spelled=kind.to_msg_text())
+        )
     if kind.container is Container.ONE:
         return _read_bounded(text, kind, primitive)
     if not (text.startswith("[") and text.endswith("]")):
         raise LiteralFault(
-            phrase("write the default of '{spelled}' as a list in square brackets", spelled=kind.spelled())
+            phrase("write the default of '{spelled}' as a list in square brackets", spelled=kind.to_msg_text())
         )
     values = tuple(_read_bounded(item, kind, primitive) for item in split_list(text[1:-1]))
     if kind.container is Container.ARRAY and len(values) != kind.size:
         raise LiteralFault(
             phrase(
                 "'{spelled}' takes {size} values, not {count}",
-                spelled=kind.spelled(),
+                spelled=kind.to_msg_text(),
                 size=kind.size,
                 count=len(values),
             )
@@ -64,7 +66,7 @@ def read_default(text: str, kind: FieldType) -> object:
         raise LiteralFault(
             phrase(
                 "'{spelled}' takes at most {size} values, not {count}",
-                spelled=kind.spelled(),
+                spelled=kind.to_msg_text(),
                 size=kind.size,
                 count=len(values),
             )
@@ -430,7 +432,7 @@ class _Reader:
                 phrase(
                     "the constant '{name}' cannot be of type '{spelled}'",
                     name=name,
-                    spelled=kind.spelled(self._package),
+                    spelled=kind.to_msg_text(self._package),
                 ),
                 at,
                 len(name),

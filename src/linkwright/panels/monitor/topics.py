@@ -58,14 +58,14 @@ class _Tree:
 
     def _one(self, name: str, field: Field, value: Any) -> MessageField:
         self._left -= 1
-        kind = field.type._replace(container=Container.ONE, size=None).described()
+        kind = field.type._replace(container=Container.ONE, size=None).to_idl_text()
         if isinstance(value, Message):
             return MessageField(name, kind, "", self.fields(value))
         return MessageField(name, kind, _text(value))
 
     def _several(self, field: Field, values: Any) -> MessageField:
         self._left -= 1
-        kind = field.type.described()
+        kind = field.type.to_idl_text()
         count = len(values)
         if field.type.primitive is None:
             row = MessageField(field.name, kind, "")

@@ -69,12 +69,12 @@ def set_logger_level(name: str, level: int, detailed_error: bool = False) -> Non
 
 
 def get_logger_effective_level(name: str) -> LogLevel:
-    """Return the level of a logger, its own or inherited."""
+    """Return the effective level of a logger, which is its own or inherited."""
     return LEVELS.effective_level(name)
 
 
 def get_logger_level(name: str) -> LogLevel:
-    """Return a logger's own level, or UNSET."""
+    """Return a logger's own level, or UNSET if it has none."""
     return LEVELS.own_level(name)
 
 

@@ -53,7 +53,7 @@ class StandIns:
             from linkwright.standins import modules
 
             modules.install()
-            return _for_a_program(modules.find_spec(name))
+            return _with_ros_field_checks(modules.find_spec(name))
         return self.interface(name) if _may_hold_interfaces(top) else None
 
     def interface(self, name: str) -> ModuleSpec | None:
@@ -65,7 +65,7 @@ class StandIns:
             _make_importable()
             from linkwright.standins.interfaces import find_spec
 
-            return _for_a_program(find_spec(name))
+            return _with_ros_field_checks(find_spec(name))
         finally:
             self._searching = False
 
@@ -144,7 +144,7 @@ def _make_importable() -> None:
             sys.path.append(folder)
 
 
-def _for_a_program(spec: ModuleSpec | None) -> ModuleSpec | None:
+def _with_ros_field_checks(spec: ModuleSpec | None) -> ModuleSpec | None:
     """Return the spec unchanged; for a user's program, make messages check fields as its ROS distribution does.
 
     A command of Linkwright in the shell is not a user's program, because it runs our own nodes.

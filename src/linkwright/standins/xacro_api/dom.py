@@ -28,13 +28,13 @@ class DomElement(minidom.Element):
     def writexml(self, writer: Any, indent: str = "", addindent: str = "", newl: str = "") -> None:
         """Write the element with sorted attributes, without blank text; on one line if it contains only text."""
         attributes = dict(self.attributes.items())
-        written = "".join(f' {name}="{escaped(attributes[name])}"' for name in sorted(attributes))
+        written = "".join(f' {name}="{escape_text(attributes[name])}"' for name in sorted(attributes))
         writer.write(f"{indent}<{self.tagName}{written}")
         children = self.childNodes
         if not children:
             writer.write(f"/>{newl}")
         elif len(children) == 1 and children[0].nodeType == minidom.Node.TEXT_NODE:
-            writer.write(f">{escaped(children[0].data)}</{self.tagName}>{newl}")
+            writer.write(f">{escape_text(children[0].data)}</{self.tagName}>{newl}")
         else:
             writer.write(f">{newl}")
             for child in children:
@@ -55,10 +55,10 @@ class DomText(minidom.Text):
 
     def writexml(self, writer: Any, indent: str = "", _addindent: str = "", newl: str = "") -> None:
         """Write the text."""
-        writer.write(f"{indent}{escaped(self.data)}{newl}")
+        writer.write(f"{indent}{escape_text(self.data)}{newl}")
 
 
-def escaped(text: str) -> str:
+def escape_text(text: str) -> str:
     """Escape a text for use in element content and attributes."""
     return text.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;").replace(">", "&gt;")
 

@@ -79,7 +79,7 @@ class MalformedFileError(MalformedError, DescriptionError):
         self.call = call
 
 
-def translated(error: LinkwrightError, call: XacroCall | None) -> LinkwrightError:
+def translate_error(error: LinkwrightError, call: XacroCall | None) -> LinkwrightError:
     """Convert an error of the engine to an error that programs written for ``xacro`` expect.
 
     Args:

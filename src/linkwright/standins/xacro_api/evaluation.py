@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from linkwright.diagnostics import LinkwrightError, phrase
-from linkwright.standins.xacro_api.errors import XacroException, translated
+from linkwright.standins.xacro_api.errors import XacroException, translate_error
 from linkwright.standins.xacro_api.stacks import STATE, abs_filename_spec
 from linkwright.xacro.expressions import yamldata
 from linkwright.xacro.expressions.scope import Namespace, Scope, truth
@@ -185,4 +185,4 @@ def _checked(evaluate: Callable[[], _Result]) -> _Result:
     except Fault as fault:
         raise XacroException(fault.message) from None
     except LinkwrightError as error:
-        raise translated(error, None) from None
+        raise translate_error(error, None) from None

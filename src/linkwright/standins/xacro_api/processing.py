@@ -15,7 +15,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, print_
 from linkwright.hosting.xacro_calls import XacroCall, current_descriptions
 from linkwright.standins.xacro_api import dom
 from linkwright.standins.xacro_api.command_line import process_args
-from linkwright.standins.xacro_api.errors import XacroException, translated
+from linkwright.standins.xacro_api.errors import XacroException, translate_error
 from linkwright.standins.xacro_api.stacks import STATE, StackExpander, StackSession, init_stacks
 from linkwright.xacro.expansion import Expansion, banner
 from linkwright.xacro.inputs import Inputs
@@ -77,7 +77,7 @@ def parse(inp: Any, filename: str | Path | None = None) -> minidom.Document:
     try:
         tree = _tree(inp, path, filename)
     except LinkwrightError as error:
-        raise translated(error, call) from None
+        raise translate_error(error, call) from None
     document = XacroDocument()
     dom.fill(document, tree)
     document.call = call
@@ -133,7 +133,7 @@ def process_file(
     try:
         tree = _tree(None, Path(STATE.root_dir, name), None)
     except LinkwrightError as error:
-        raise translated(error, call) from None
+        raise translate_error(error, call) from None
     expansion = _expand(tree, name, mappings, call)
     expansion.document.prolog[:0] = comments = banner(name)
     expansion.document.doctype_index += len(comments)
@@ -241,7 +241,7 @@ def _expand(tree: Document, file: str | None, mappings: Mapping[str, Any] | None
     except LinkwrightError as error:
         session.return_to_mistake()
         _print_remarks(session.diagnostics)
-        raise translated(error, call) from None
+        raise translate_error(error, call) from None
     finally:
         STATE.arguments = {}
     session.warn_of_unused_arguments()

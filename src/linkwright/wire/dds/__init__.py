@@ -1,6 +1,6 @@
 """DDS as ROS 2 nodes use it. Importing this package does not load the DDS library."""
 
-from linkwright.wire.dds.joining import available, join, why_not
+from linkwright.wire.dds.joining import available, join, unavailable_reason
 from linkwright.wire.dds.transport import DdsTransport
 
-__all__ = ["DdsTransport", "available", "join", "why_not"]
+__all__ = ["DdsTransport", "available", "join", "unavailable_reason"]

@@ -197,7 +197,7 @@ class Cyclone:
     def guid(self, entity: int) -> bytes:
         """Return the globally unique identifier of an entity, 16 bytes."""
         buffer = c.create_string_buffer(16)
-        checked(self.dds_get_guid(entity, buffer), "asking for an identifier")
+        check_call(self.dds_get_guid(entity, buffer), "asking for an identifier")
         return buffer.raw
 
     def matched(self, entity: int, *, writer: bool) -> list[int]:
@@ -280,7 +280,7 @@ def load() -> Cyclone:
     return Cyclone()
 
 
-def checked(code: int, what: str) -> int:
+def check_call(code: int, what: str) -> int:
     """Return the result of a call if it succeeded.
 
     Args:

@@ -30,7 +30,7 @@ LOOK_AGAIN = 0.2
 
 
 @dataclass(slots=True)
-class _Gone:
+class _MissingWriter:
     """A writer that disappeared before its node withdrew it.
 
     Attributes:
@@ -56,7 +56,7 @@ class Departures:
         self._remote = remote
         self._now = now
         self._watchers: list[Callable[[EndpointInfo], None]] = []
-        self._gone: list[_Gone] = []
+        self._gone: list[_MissingWriter] = []
         self._dead_since: dict[bytes, float] = {}
         self._reported: set[bytes] = set()
         remote.departures = self
@@ -73,7 +73,7 @@ class Departures:
             node: the node that still announces it; None if it was withdrawn.
         """
         if self._watchers and endpoint.is_writer and node is not None and endpoint.participant not in self._reported:
-            self._gone.append(_Gone(endpoint, node))
+            self._gone.append(_MissingWriter(endpoint, node))
 
     def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
         """Handle an announcement: endpoints that disappeared and are not in it were withdrawn."""
@@ -119,7 +119,7 @@ class Departures:
         return bool(here)
 
     def _report(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
-        info = endpoint.described(node)
+        info = endpoint.endpoint_info(node)
         if info is not None and info.kind is EndpointKind.PUBLISHER:
             for lost in self._watchers:
                 lost(info)

@@ -31,7 +31,7 @@ from linkwright.wire.dds.discovery_info import (
 from linkwright.wire.dds.names import DISCOVERY_TOPIC, parse_user_data
 from linkwright.wire.dds.participant import SERVICES_NAME, Participant, process_namespace
 from linkwright.wire.dds.qos import endpoint_qos, profile_of
-from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant, is_fast, runs
+from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant, is_fast, is_process_running
 from linkwright.wire.dds.type_descriptions import WireTypes
 from linkwright.wire.dds.waiting import WaitingThread
 
@@ -151,7 +151,7 @@ class Discovery:
         if not process_namespace():
             return None
         for host, number in announced_processes(partial(self._dds.property, qos)):
-            if host == _HOST and number.isdecimal() and runs(int(number)):
+            if host == _HOST and number.isdecimal() and is_process_running(int(number)):
                 return int(number)
         return None
 

@@ -20,8 +20,8 @@ from linkwright.graph.endpoints.service import RequestId
 from linkwright.wire.dds.names import Role, dds_topic
 from linkwright.wire.dds.rtps.participant import RtpsParticipant
 from linkwright.wire.dds.rtps.values import NO_NUMBER, PREFIX, is_reader, read_related_identity, related_identity
-from linkwright.wire.dds.service_types import halves, service_facts
-from linkwright.wire.service_messages import hand_request_on, hand_response_on, written
+from linkwright.wire.dds.service_types import request_and_response_types, service_facts
+from linkwright.wire.service_messages import forward_request, forward_response, to_cdr
 from linkwright.wire.type_names import dds_type
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ class FastServer:
         self._service = service
         self._participant = participant
         facts = service_facts(os.urandom(16), service, is_server=True)
-        request, response = map(dds_type, halves(service.type_name))
+        request, response = map(dds_type, request_and_response_types(service.type_name))
         self._late: deque[tuple[float, bytes, int, Any]] = deque()
         self._early: list[EarlyRequest] = []
         self._first: dict[bytes, tuple[int, int]] = {}
@@ -127,14 +127,14 @@ class FastServer:
         self._ask(sample.payload or b"", sample.writer, client, sample.number)
 
     def _ask(self, body: bytes, writer: bytes, client: bytes, number: int) -> None:
-        hand_request_on(body, self._service, partial(self._reply, client, number), RequestId(writer, number))
+        forward_request(body, self._service, partial(self._reply, client, number), RequestId(writer, number))
 
     def _reply(self, client: bytes, number: int, response: Any, due: float | None = None) -> None:
         if self._service.destroyed:
             return
         if self._can_reach(client):
             inline = related_identity(client, number)
-            self._participant.write(self._replies, written(response), inline=inline, to=client[:PREFIX])
+            self._participant.write(self._replies, to_cdr(response), inline=inline, to=client[:PREFIX])
         else:
             with self._lock:
                 self._late.append((due or time.monotonic() + _REPLY_WAITS, client, number, response))
@@ -194,7 +194,7 @@ class FastClient:
         self._participant = participant
         self._is_dead = is_dead
         facts = service_facts(os.urandom(16), client, is_server=False)
-        request, response = map(dds_type, halves(client.type_name))
+        request, response = map(dds_type, request_and_response_types(client.type_name))
         self._answers: dict[int, Callable[[Any], None]] = {}
         self._identities: tuple[bytes, ...] = ()
         self._lock = Lock()
@@ -207,7 +207,7 @@ class FastClient:
         """Write a request; return a function that cancels it."""
         inline = related_identity(self._replies.reader.guid, NO_NUMBER)
         with self._lock:
-            number = self._participant.write(self._requests, written(request), inline=inline)
+            number = self._participant.write(self._requests, to_cdr(request), inline=inline)
             self._answers[number] = answer
         return partial(self._forget, number)
 
@@ -235,7 +235,7 @@ class FastClient:
         with self._lock:
             answer = self._answers.pop(identity[1], None)
         if answer is not None:
-            hand_response_on(sample.payload or b"", self._client, answer)
+            forward_response(sample.payload or b"", self._client, answer)
 
 
 def _is_settled(heard_at: float | None, now: float) -> bool:

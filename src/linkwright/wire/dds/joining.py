@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from linkwright.graph.node import Graph
 
 
-def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
+def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
     """Return the reason why this process does not use DDS; empty if it does.
 
     Args:
@@ -41,9 +41,9 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
 
 def available(environment: Mapping[str, str] | None = None) -> bool:
     """Return whether DDS can be used."""
-    return not why_not(environment)
+    return not unavailable_reason(environment)
 
 
 def join(graph: Graph, **options: Unpack[JoinOptions]) -> DdsTransport | None:
     """Connect a graph to other processes over DDS; return None if that is not possible."""
-    return join_with(graph, "dds", read_settings, DdsTransport, why_not, options)
+    return join_with(graph, "dds", read_settings, DdsTransport, unavailable_reason, options)

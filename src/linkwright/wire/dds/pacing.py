@@ -67,7 +67,7 @@ class Receiver:
         """Start a new sample. If the reader received nothing of the previous sample, do not wait for it again."""
         self._room, self._looks = 0, 1 if self._is_stuck else _LOOKS
 
-    def takes_one(self) -> bool:
+    def wait_for_room(self) -> bool:
         """Wait until a packet fits into the buffer.
 
         Return whether it fits before the checks for this sample are used up.
@@ -108,7 +108,7 @@ class Pacer:
         self._socket: socket.socket | None = None
         self._receivers: dict[Address, Receiver] = {}
 
-    def places_of(self, readers: Iterable[bytes]) -> dict[bytes, Address]:
+    def addresses_of(self, readers: Iterable[bytes]) -> dict[bytes, Address]:
         """Return the addresses of the participants of readers on this machine, by GUID prefix."""
         found = {reader[:PREFIX]: self._address_of(reader) for reader in readers}
         return {prefix: address for prefix, address in found.items() if address is not None}
@@ -137,7 +137,7 @@ class Pacer:
             number: the sequence number that the writer gives to the sample.
             sample: the serialized sample, whose length is a multiple of four bytes.
             written: when it was published, in ns since the epoch.
-            places: the participants with readers; see `places_of`.
+            places: the participants with readers; see `addresses_of`.
         """
         if self._socket is None:
             self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -149,7 +149,7 @@ class Pacer:
             part = data[(which - 1) * FRAGMENT : which * FRAGMENT]
             start = fragment_start(UNKNOWN, writer[PREFIX:], number, len(sample), which, len(part))
             for prefix, receiver in tuple(readers.items()):
-                if receiver.takes_one():
+                if receiver.wait_for_room():
                     head = message(writer[:PREFIX], stamp, start, to=prefix)
                     with suppress(OSError):  # Cyclone sends the packets that the system does not accept here
                         self._socket.sendto(head + part, receiver.address)
@@ -238,7 +238,7 @@ class PacedWriter:
 
     def _places(self, sample: bytes) -> dict[bytes, Address]:
         """Return the addresses of the readers that a sample is paced for; empty if it fits in one packet."""
-        return self._pacer.places_of(self._readers()) if len(sample) > FRAGMENT and self._is_numbered else {}
+        return self._pacer.addresses_of(self._readers()) if len(sample) > FRAGMENT and self._is_numbered else {}
 
     def _write_now(self, sample: bytes, published: int | None = None) -> bool:
         is_written = self._write(sample, published)

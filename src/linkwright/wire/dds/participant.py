@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.wire.dds.cyclone import CycloneError, checked, load
+from linkwright.wire.dds.cyclone import CycloneError, check_call, load
 from linkwright.wire.dds.open_domains import close_domain, open_domain
 from linkwright.wire.dds.qos import participant_qos
 from linkwright.wire.dds.settings import Settings
@@ -53,7 +53,7 @@ class Participant:
         try:
             with participant_qos(f"enclave={settings.enclave};".encode(), entity_name()) as qos:
                 code = self._dds.dds_create_participant(self._domain.number, qos, None)
-            self.entity = checked(code, "joining the domain")
+            self.entity = check_call(code, "joining the domain")
         except CycloneError as error:
             close_domain(self._domain)
             raise _no_participant(settings, error) from error
@@ -78,11 +78,11 @@ class Participant:
 
     def create_reader(self, topic: int, qos: int | None) -> int:
         """Create a reader for a topic, or for one of Cyclone's builtin topics."""
-        return checked(self._dds.dds_create_reader(self.entity, topic, qos, None), "making a reader")
+        return check_call(self._dds.dds_create_reader(self.entity, topic, qos, None), "making a reader")
 
     def create_writer(self, topic: int, qos: int) -> int:
         """Create a writer for a topic."""
-        return checked(self._dds.dds_create_writer(self.entity, topic, qos, None), "making a writer")
+        return check_call(self._dds.dds_create_writer(self.entity, topic, qos, None), "making a writer")
 
     def delete(self, *entities: int) -> None:
         """Delete entities; readers and writers must be given before their topics."""

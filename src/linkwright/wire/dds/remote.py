@@ -82,7 +82,7 @@ class RemoteParticipant:
 
     def has_died(self) -> bool:
         """Return whether its process has ended before its lease expired; known only on this machine."""
-        return self.process is not None and not runs(self.process)
+        return self.process is not None and not is_process_running(self.process)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +119,7 @@ class RemoteEndpoint:
         """Whether it belongs to a participant of Fast DDS (RTPS vendor 1.15)."""
         return is_fast(self.guid)
 
-    def described(self, node: NodeIdentity | None, host: str = "") -> EndpointInfo | None:
+    def endpoint_info(self, node: NodeIdentity | None, host: str = "") -> EndpointInfo | None:
         """Return its description in ROS terms.
 
         None for an endpoint outside ROS or the second half of a service or client.
@@ -328,7 +328,7 @@ class RemoteGraph(Outside):
                 info
                 for endpoint in self._endpoints.values()
                 if endpoint.participant not in dead
-                and (info := endpoint.described(owners.get(endpoint.guid), self._host_of(endpoint))) is not None
+                and (info := endpoint.endpoint_info(owners.get(endpoint.guid), self._host_of(endpoint))) is not None
             ]
 
     def _host_of(self, endpoint: RemoteEndpoint) -> str:
@@ -379,7 +379,7 @@ class RemoteGraph(Outside):
         return dead
 
 
-def runs(process: int) -> bool:
+def is_process_running(process: int) -> bool:
     """Return whether a process with the given id is running on this machine."""
     try:
         os.kill(process, 0)

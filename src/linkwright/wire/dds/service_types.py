@@ -20,7 +20,7 @@ def service_facts(identity: bytes, endpoint: Endpoint, *, is_server: bool) -> by
     return (f"{key}={endpoint_id(identity)};" + (f"typehash={hash_text};" if hash_text else "")).encode()
 
 
-def halves(service_type: str) -> tuple[str, str]:
+def request_and_response_types(service_type: str) -> tuple[str, str]:
     """Return the ROS types of the requests and the responses of a service, such as ``std_srvs/srv/SetBool``."""
     return f"{service_type}_Request", f"{service_type}_Response"
 

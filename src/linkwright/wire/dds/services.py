@@ -36,8 +36,8 @@ from linkwright.wire.dds.fast_services import EarlyRequest, FastClient, FastServ
 from linkwright.wire.dds.names import Role, dds_topic
 from linkwright.wire.dds.qos import endpoint_qos
 from linkwright.wire.dds.remote import RemoteEndpoint, is_fast
-from linkwright.wire.dds.service_types import halves, service_facts
-from linkwright.wire.service_messages import hand_request_on, hand_response_on, written
+from linkwright.wire.dds.service_types import request_and_response_types, service_facts
+from linkwright.wire.service_messages import forward_request, forward_response, to_cdr
 
 if TYPE_CHECKING:
     from linkwright.graph.endpoints.base import Endpoint
@@ -72,7 +72,7 @@ class Pair:
         self.reply_topic = dds_topic(Role.REPLY, endpoint.name)
         facts = service_facts(os.urandom(16), endpoint, is_server=is_server)
         # Described by name only, because requests of Fast DDS arrive without the header.
-        described = (domain.types.by_name(half) for half in halves(endpoint.type_name))
+        described = (domain.types.by_name(half) for half in request_and_response_types(endpoint.type_name))
         request = participant.create_topic(self.request_topic, next(described))
         reply = participant.create_topic(self.reply_topic, next(described))
         self._topics = (request, reply)
@@ -100,7 +100,7 @@ class Pair:
 
     def write(self, client_id: int, number: int, message: Any) -> None:
         """Write a request or a reply."""
-        write(self.writer, _LITTLE_ENDIAN + HEADER.pack(client_id, number) + written(message)[_ENCAPSULATION:])
+        write(self.writer, _LITTLE_ENDIAN + HEADER.pack(client_id, number) + to_cdr(message)[_ENCAPSULATION:])
 
     def close(self) -> None:
         """Delete the reader and the writer."""
@@ -147,10 +147,10 @@ class OutsideServer:
         count = 0
         for data, _ in self.pair.samples():
             count += 1
-            client_id, number, body = _divided(data)
+            client_id, number, body = _split_sample(data)
             answer = self._answers.pop(number, None) if client_id == self._client_id else None
             if answer is not None:
-                hand_response_on(body, self._client, answer)
+                forward_response(body, self._client, answer)
         return count == _AT_ONCE
 
     def on_writer_status(self) -> bool:
@@ -186,7 +186,7 @@ class OutsideServer:
         listening = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True)]
         ours = [endpoint for endpoint in listening if endpoint is not None and not endpoint.is_fast]
         replying = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.reader, writer=False)]
-        return any(_belong_together(a, b, "serviceid") for a in ours for b in replying)
+        return any(_have_same_owner(a, b, "serviceid") for a in ours for b in replying)
 
 
 class IncomingService:
@@ -217,11 +217,11 @@ class IncomingService:
             sender = self._remote.endpoint(info.publication_handle)
             if self._from_fast(sender, data, info):
                 continue
-            client_id, number, body = _divided(data)
+            client_id, number, body = _split_sample(data)
             if body:
                 gid = bytes(16) if sender is None else sender.guid
                 reply = partial(self._reply, sender, client_id, number)
-                hand_request_on(body, self._service, reply, RequestId(gid, number))
+                forward_request(body, self._service, reply, RequestId(gid, number))
         return count == _AT_ONCE
 
     def meet_fast(self, participant: RtpsParticipant) -> None:
@@ -279,10 +279,10 @@ class IncomingService:
     def _can_reach(self, sender: RemoteEndpoint | None) -> bool:
         """Return whether the client's reader is matched with our writer; before that, it would miss the reply."""
         readers = (self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True))
-        return any(_belong_together(sender, reader, "clientid") for reader in readers)
+        return any(_have_same_owner(sender, reader, "clientid") for reader in readers)
 
 
-def _belong_together(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: str) -> bool:
+def _have_same_owner(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: str) -> bool:
     """Return whether two endpoints belong to the same client or server.
 
     They are compared by the ID, or by the participant if there is no ID.
@@ -294,7 +294,7 @@ def _belong_together(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: st
     return a.participant == b.participant
 
 
-def _divided(data: bytes) -> tuple[int, int, bytes]:
+def _split_sample(data: bytes) -> tuple[int, int, bytes]:
     """Split a sample into the client's id, the sequence number and the body as CDR.
 
     Without a header, the body is empty.

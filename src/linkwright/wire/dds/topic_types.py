@@ -23,7 +23,7 @@ from functools import lru_cache
 from threading import Lock
 from typing import Any
 
-from linkwright.wire.dds.cyclone import checked, load
+from linkwright.wire.dds.cyclone import check_call, load
 
 _UNUSED = "linkwright_type_{}"
 """The names of the topics that types are taken from."""
@@ -65,7 +65,7 @@ class TopicTypes:
         code = self._dds.dds_create_topic_sertype(participant, name.encode(), c.byref(pointer), None, None, None)
         if code < 0:
             self._dds.ddsi_sertype_unref(address)
-        return checked(code, what)
+        return check_call(code, what)
 
     def free(self) -> None:
         """Free the types of a closed domain, once Cyclone no longer refers to them."""
@@ -80,17 +80,17 @@ class TopicTypes:
         (``ddsi_topic_descriptor_from_type``): graphs of a process that joined at the same time crashed.
         """
         name = _UNUSED.format(len(self._made))
-        unused = checked(self._dds.create_topic(participant, name, described_type, None, None), what)
+        unused = check_call(self._dds.create_topic(participant, name, described_type, None, None), what)
         pointer = c.c_void_p()
-        checked(self._dds.dds_get_entity_sertype(unused, c.byref(pointer)), "asking for a type")
+        check_call(self._dds.dds_get_entity_sertype(unused, c.byref(pointer)), "asking for a type")
         address: int = self._dds.ddsi_sertype_ref(pointer)
         functions = c.c_void_p.from_address(address)
-        functions.value = _undescribing(functions.value or 0)
+        functions.value = _table_without_descriptions(functions.value or 0)
         return address
 
 
 @lru_cache
-def _undescribing(table: int) -> int:
+def _table_without_descriptions(table: int) -> int:
     """Return the address of a copy of a function table without the functions that describe types.
 
     The address of the table itself is returned if its layout is unknown. The copy is never freed, because Cyclone may

@@ -49,10 +49,10 @@ class DdsTransport(BackgroundTransport):
     def _has_settled(self, quiet: float) -> bool:
         """Return whether every participant has announced its nodes and there is nothing new."""
         return self._remote.is_complete() and (
-            quiet >= SETTLED_AFTER or (quiet >= _SETTLED_AMONG_KNOWN and self._knows_everybody())
+            quiet >= SETTLED_AFTER or (quiet >= _SETTLED_AMONG_KNOWN and self._knows_all_processes())
         )
 
-    def _knows_everybody(self) -> bool:
+    def _knows_all_processes(self) -> bool:
         """Return whether all processes that can take part are known, so that there is nothing to wait for.
 
         This can be known only for Linkwright's processes on this machine, and only if no others are looked for. It

@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable
 
-from linkwright.wire.dds.cyclone import INFINITY, checked, load
+from linkwright.wire.dds.cyclone import INFINITY, check_call, load
 from linkwright.wire.living_threads import guarded
 
 Handler = Callable[[], bool]
@@ -36,9 +36,9 @@ class WaitingThread(threading.Thread):
     ) -> None:
         super().__init__(name=name, daemon=True)
         self._dds = load()
-        self._waitset = checked(self._dds.dds_create_waitset(owner), "making a waitset")
-        self._guard = checked(self._dds.dds_create_guardcondition(owner), "making a guard condition")
-        checked(self._dds.dds_waitset_attach(self._waitset, self._guard, 0), "attaching the guard condition")
+        self._waitset = check_call(self._dds.dds_create_waitset(owner), "making a waitset")
+        self._guard = check_call(self._dds.dds_create_guardcondition(owner), "making a guard condition")
+        check_call(self._dds.dds_waitset_attach(self._waitset, self._guard, 0), "attaching the guard condition")
         self._handlers: dict[int, Handler] = {}
         self._report = report
         self._idle = idle
@@ -47,7 +47,7 @@ class WaitingThread(threading.Thread):
     def attach(self, entity: int, handler: Handler) -> None:
         """Register a handler that is called whenever an enabled status of an entity is set."""
         self._handlers[entity] = handler
-        checked(self._dds.dds_waitset_attach(self._waitset, entity, entity), "attaching")
+        check_call(self._dds.dds_waitset_attach(self._waitset, entity, entity), "attaching")
 
     def detach(self, entity: int) -> None:
         """Stop calling the handler of an entity, which may still be running."""

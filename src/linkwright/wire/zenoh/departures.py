@@ -118,7 +118,7 @@ class Departures:
 
     def _is_lost(self, gone: _Gone) -> bool:
         token = gone.token
-        if self._remote.is_there(gone.key):
+        if self._remote.has_token(gone.key):
             return False
         if token.session in self._here or token.session in self._ended:
             return token.session in self._ended and token.session not in self._left

@@ -25,7 +25,7 @@ from linkwright.wire.type_names import dds_type
 from linkwright.wire.zenoh import qos_text, tokens
 from linkwright.wire.zenoh.departures import Departures
 from linkwright.wire.zenoh.interests import OURS, Interests
-from linkwright.wire.zenoh.opening import Patience
+from linkwright.wire.zenoh.opening import SessionOpener
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.services import IncomingService, OutsideServer
 from linkwright.wire.zenoh.session import close_session, configuration, is_client
@@ -60,7 +60,7 @@ class Engine(AnyEngine):
         departures: Departures,
         work: Work,
         logger: Logger,
-        patience: Patience,
+        patience: SessionOpener,
     ) -> None:
         super().__init__(work, logger)
         self._settings = settings
@@ -134,7 +134,7 @@ class Engine(AnyEngine):
         number = str(next(self._ids))
         token = Token(self._settings.domain_id, self._session_id, number, number, node)
         self._nodes.setdefault(node, []).append((number, self._session.liveliness().declare_token(token.key)))
-        self._interests.add(tokens.of_node(self._settings.domain_id, node))
+        self._interests.add(tokens.node_token_pattern(self._settings.domain_id, node))
 
     def remove_node(self, node: NodeIdentity) -> None:
         """Withdraw a node."""
@@ -142,7 +142,7 @@ class Engine(AnyEngine):
         if announced:
             _, token = announced.pop()
             token.undeclare()
-            if self._interests.remove(tokens.of_node(self._settings.domain_id, node)):
+            if self._interests.remove(tokens.node_token_pattern(self._settings.domain_id, node)):
                 self._remote.forget_nodes(node.full_name)
             if not announced:
                 del self._nodes[node]
@@ -203,7 +203,7 @@ class Engine(AnyEngine):
             mirrored.close()
             self._own_gids.discard(mirrored.token.gid)
             kind = _OPPOSITE.get(mirrored.token.kind)
-            if kind is not None and self._interests.remove(tokens.of_others(mirrored.token, kind)):
+            if kind is not None and self._interests.remove(tokens.peer_token_pattern(mirrored.token, kind)):
                 self._remote.forget_endpoints(kind, mirrored.token.data_key)
 
     def _announce(self, endpoint: Any, mirrored: Any) -> None:
@@ -213,7 +213,7 @@ class Engine(AnyEngine):
             self._tokens[endpoint] = self._session.liveliness().declare_token(mirrored.token.key)
         kind = _OPPOSITE.get(mirrored.token.kind)
         if kind is not None:
-            self._interests.add(tokens.of_others(mirrored.token, kind))
+            self._interests.add(tokens.peer_token_pattern(mirrored.token, kind))
         self._review(mirrored)
 
     def _token_of(self, endpoint: Any, kind: EndpointKind) -> Token:

@@ -24,7 +24,7 @@ def is_installed() -> bool:
     return find_spec("zenoh") is not None and find_spec("xxhash") is not None
 
 
-def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
+def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
     """Return the reason why this process does not use Zenoh; empty if it does.
 
     Args:
@@ -45,4 +45,4 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
 
 def join(graph: Graph, **options: Unpack[JoinOptions]) -> ZenohTransport | None:
     """Connect a graph to other processes over Zenoh; return None if that is not possible."""
-    return join_with(graph, "zenoh", read_settings, ZenohTransport, why_not, options)
+    return join_with(graph, "zenoh", read_settings, ZenohTransport, unavailable_reason, options)

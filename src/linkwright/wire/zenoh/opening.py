@@ -11,8 +11,8 @@ import zenoh
 
 from linkwright.diagnostics import joined
 from linkwright.graph.log.logger import Logger
-from linkwright.wire.zenoh.reaching import asked_for, obstacles, of_mode
-from linkwright.wire.zenoh.session import could_not_connect, open_with, refusal
+from linkwright.wire.zenoh.reaching import configured_addresses, mode_value, obstacles
+from linkwright.wire.zenoh.session import could_not_connect, open_with, session_error
 
 _AGAIN = 1.0
 """Seconds after which the addresses are called again."""
@@ -23,7 +23,7 @@ _LOGGED_AFTER = 1.0
 _LOGGED_AGAIN_AFTER = 10.0
 
 
-class Patience:
+class SessionOpener:
     """Opens sessions, retrying for as long as their configuration allows or until `given_up` is set.
 
     Zenoh can wait itself, but then it cannot be interrupted and reports nothing.
@@ -45,7 +45,7 @@ class Patience:
         Raises:
             LinkwrightError: DDS112, it cannot be opened, no process was reached in time, or waiting was interrupted.
         """
-        seconds = _waits(config)
+        seconds = _wait_seconds(config)
         if seconds == 0:
             return open_with(config)
         config.insert_json5("connect/timeout_ms", "0")
@@ -60,12 +60,12 @@ class Patience:
 
     def _open_until(self, config: zenoh.Config, until: float) -> zenoh.Session:
         while True:
-            opened = _try(config)
+            opened = _try_open(config)
             if isinstance(opened, zenoh.Session):
                 return opened
             rest = until - time.monotonic()
             if not could_not_connect(opened) or rest <= 0 or self._given_up.wait(min(_AGAIN, rest)):
-                raise refusal(opened, config) from opened
+                raise session_error(opened, config) from opened
 
     def _log_wait(self, reasons: str) -> None:
         self._logger.warning(f"Waiting for a Zenoh router: {reasons}")
@@ -104,14 +104,15 @@ class ObstacleReporter:
                 pause = _LOGGED_AFTER
                 continue
             reasons = (
-                joined(obstacles(self._config), "; ") or f"{', '.join(asked_for(self._config))} accepts no session"
+                joined(obstacles(self._config), "; ")
+                or f"{', '.join(configured_addresses(self._config))} accepts no session"
             )
             if not self._over.is_set() and not self._linked():
                 self._log(reasons)
             pause = _LOGGED_AGAIN_AFTER
 
 
-def _try(config: zenoh.Config) -> zenoh.Session | zenoh.ZError:
+def _try_open(config: zenoh.Config) -> zenoh.Session | zenoh.ZError:
     """Open a session; return it, or the error that prevented it."""
     try:
         return zenoh.open(config)
@@ -119,10 +120,10 @@ def _try(config: zenoh.Config) -> zenoh.Session | zenoh.ZError:
         return error
 
 
-def _waits(config: zenoh.Config) -> float:
+def _wait_seconds(config: zenoh.Config) -> float:
     """Return how many seconds a configuration lets a new session wait for a connection."""
-    is_client = of_mode(config, "mode", default="peer") == "client"
-    if not asked_for(config) or not of_mode(config, "connect/exit_on_failure", default=is_client):
+    is_client = mode_value(config, "mode", default="peer") == "client"
+    if not configured_addresses(config) or not mode_value(config, "connect/exit_on_failure", default=is_client):
         return 0.0
-    milliseconds: Any = of_mode(config, "connect/timeout_ms", default=0 if is_client else -1)
+    milliseconds: Any = mode_value(config, "connect/timeout_ms", default=0 if is_client else -1)
     return float("inf") if milliseconds < 0 else milliseconds / 1000

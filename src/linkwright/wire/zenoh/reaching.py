@@ -26,14 +26,14 @@ _CALLED = ("tcp", "tls")
 """Kinds of addresses that are called here; others (QUIC, UDP, serial lines) are Zenoh's alone."""
 
 
-def asked_for(config: zenoh.Config) -> list[str]:
+def configured_addresses(config: zenoh.Config) -> list[str]:
     """Return the addresses that a session with this configuration connects to."""
-    addresses = of_mode(config, "connect/endpoints", default=[])
+    addresses = mode_value(config, "connect/endpoints", default=[])
     flat = [address for group in addresses for address in (group if isinstance(group, list) else [group])]
     return [str(address) for address in flat]
 
 
-def of_mode(config: zenoh.Config, key: str, *, default: Any) -> Any:
+def mode_value(config: zenoh.Config, key: str, *, default: Any) -> Any:
     """Return the value of a setting that may differ by mode, such as ``{client: 0, peer: -1}``."""
     value = json.loads(config.get_json(key))
     if isinstance(value, dict):
@@ -44,7 +44,7 @@ def of_mode(config: zenoh.Config, key: str, *, default: Any) -> Any:
 def obstacles(config: zenoh.Config) -> list[Phrase]:
     """Return the known reasons why a session cannot connect to its addresses."""
     tls = json.loads(config.get_json("transport/link/tls")) or {}
-    found = [found for address in asked_for(config) if (found := obstacle(address, tls))]
+    found = [found for address in configured_addresses(config) if (found := obstacle(address, tls))]
     if not found and json.loads(config.get_json("id")) is not None:
         found.append(phrase("the process there may have the same 'id': leave 'id' out of the configuration"))
     return found
@@ -69,7 +69,11 @@ def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
         return phrase("'{address}' is not an address: its port must be at most 65535", address=address)
     try:
         with socket.create_connection((host, port), _PATIENCE) as called:
-            return _tls_obstacle(address, called, host, tls) if parts["kind"] == "tls" else _silence(address, called)
+            return (
+                _tls_obstacle(address, called, host, tls)
+                if parts["kind"] == "tls"
+                else _protocol_obstacle(address, called)
+            )
     except socket.gaierror as error:
         return phrase("the host name of {address} cannot be resolved: {reason}", address=address, reason=_reason(error))
     except ConnectionRefusedError:
@@ -83,7 +87,7 @@ def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
         return phrase("{address} is unreachable: {reason}", address=address, reason=_reason(error))
 
 
-def _silence(address: str, called: socket.socket) -> Phrase:
+def _protocol_obstacle(address: str, called: socket.socket) -> Phrase:
     """Send a first Zenoh message; return a reason if the listener answers with TLS, otherwise an empty phrase."""
     called.settimeout(_PATIENCE / 4)
     try:
@@ -135,7 +139,7 @@ def _tls_obstacle(address: str, called: socket.socket, host: str, tls: Mapping[s
         with context.wrap_socket(called, server_hostname=host) as secured:
             is_agreed = True
             secured.settimeout(_PATIENCE / 2)
-            secured.recv(1)  # with TLS 1.3 a refused client learns of the refusal after the handshake
+            secured.recv(1)  # with TLS 1.3, a client learns only after the handshake that it was refused
     except TimeoutError:
         return Phrase("") if is_agreed else _no_tls(address)
     except ssl.SSLCertVerificationError as error:

@@ -91,7 +91,7 @@ class RemoteGraph(Outside):
         with self._lock:
             return any(token.kind is not None and token.node_key == node_key for token in self._tokens.values())
 
-    def is_there(self, key: str) -> bool:
+    def has_token(self, key: str) -> bool:
         """Return whether a token exists."""
         return key in self._tokens
 

@@ -13,7 +13,7 @@ import zenoh
 from zenoh.handlers import Callback
 
 from linkwright.graph.endpoints.service import RequestId
-from linkwright.wire.service_messages import hand_request_on, hand_response_on, written
+from linkwright.wire.service_messages import forward_request, forward_response, to_cdr
 from linkwright.wire.zenoh import attachment
 from linkwright.wire.zenoh.tokens import Token
 
@@ -62,7 +62,7 @@ class OutsideServer:
         self._answers[number] = answer
         handler: Any = Callback(partial(self._receive, number), partial(self._end, number), indirect=False)
         about = attachment.write(number, time.time_ns(), self.token.gid)
-        self._querier.get(handler, payload=written(request), attachment=about)
+        self._querier.get(handler, payload=to_cdr(request), attachment=about)
         return partial(self._forget, number)
 
     def review(self, count: int) -> None:
@@ -94,7 +94,7 @@ class OutsideServer:
             return
         answer = self._answers.pop(number, None)
         if answer is not None:
-            hand_response_on(sample.payload.to_bytes(), self._client, answer)
+            forward_response(sample.payload.to_bytes(), self._client, answer)
 
     def _end(self, number: int) -> None:
         """Log, once, that a request has ended without a reply; its future stays pending, as in rclpy."""
@@ -126,7 +126,7 @@ class IncomingService:
         self._queryable = session.declare_queryable(
             token.data_key, handler, complete=True, allowed_origin=zenoh.Locality.REMOTE
         )
-        self._open: WeakSet[_Question] = WeakSet()
+        self._open: WeakSet[_PendingRequest] = WeakSet()
         """The requests that wait for a reply. A request that will get none, because the queue was full or the callback
         has failed, is not held: its client learns of it."""
         self._closed = False
@@ -149,18 +149,18 @@ class IncomingService:
         if about is None or body is None:
             query.drop()
             return
-        question = _Question(query, about)
+        question = _PendingRequest(query, about)
         with self._lock:
             closed = self._closed
             if not closed:
                 self._open.add(question)
         reply, request_id = partial(self._reply, question), RequestId(about.gid, about.number)
-        if closed or not hand_request_on(body, self._service, reply, request_id):
+        if closed or not forward_request(body, self._service, reply, request_id):
             with self._lock:
                 self._open.discard(question)
             question.drop()
 
-    def _reply(self, question: _Question, response: Any) -> None:
+    def _reply(self, question: _PendingRequest, response: Any) -> None:
         with self._lock:
             if question not in self._open:  # it was dropped, or has already been answered
                 return
@@ -168,7 +168,7 @@ class IncomingService:
         question.answer(response, self.token.data_key)
 
 
-class _Question:
+class _PendingRequest:
     """A request that waits for its reply.
 
     Args:
@@ -183,7 +183,7 @@ class _Question:
     def answer(self, response: Any, key: str) -> None:
         """Send the response."""
         enclosed = attachment.write(self._about.number, time.time_ns(), self._about.gid)
-        self._query.reply(key, written(response), attachment=enclosed)
+        self._query.reply(key, to_cdr(response), attachment=enclosed)
         self._query.drop()
 
     def drop(self) -> None:

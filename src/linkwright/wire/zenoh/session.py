@@ -29,7 +29,7 @@ def open_with(config: zenoh.Config) -> zenoh.Session:
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:
-        raise refusal(error, config) from error
+        raise session_error(error, config) from error
 
 
 def close_session(session: zenoh.Session) -> None:
@@ -47,7 +47,7 @@ def close_session(session: zenoh.Session) -> None:
         closing.join(_CLOSING_LIMIT)
 
 
-def refusal(error: zenoh.ZError, config: zenoh.Config) -> LinkwrightError:
+def session_error(error: zenoh.ZError, config: zenoh.Config) -> LinkwrightError:
     """Return the error DDS112 for a session that cannot be opened."""
     found = obstacles(config) if could_not_connect(error) else []
     return LinkwrightError(

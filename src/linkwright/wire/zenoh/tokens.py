@@ -111,12 +111,12 @@ def data_key(domain_id: int, name: str, type_name: str, type_hash: str) -> str:
     return f"{domain_id}/{name.strip('/')}/{type_name}/{type_hash}"
 
 
-def of_node(domain_id: int, node: NodeIdentity) -> str:
+def node_token_pattern(domain_id: int, node: NodeIdentity) -> str:
     """Return the key expression that matches the tokens of nodes with a name."""
     return f"{ROOT}/{domain_id}/*/*/*/{_NODE}/*/{_chunk(node.namespace)}/{node.name}"
 
 
-def of_others(token: Token, kind: EndpointKind) -> str:
+def peer_token_pattern(token: Token, kind: EndpointKind) -> str:
     """Return the key expression that matches the tokens of endpoints of another kind at the same key."""
     about = (_chunk(token.name), _chunk(token.type_name), _chunk(token.type_hash))
     return "/".join((ROOT, str(token.domain_id), "*/*/*", _MARKS[kind], "*/*/*", *about, "**"))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from linkwright.wire.zenoh.engine import Engine as ZenohEngine
-    from linkwright.wire.zenoh.opening import Patience
+    from linkwright.wire.zenoh.opening import SessionOpener
 
 SETTLED_AFTER = 0.4
 """Seconds without news after which discovery counts as complete, where another session is linked to this one."""
@@ -46,7 +46,7 @@ class ZenohTransport(BackgroundTransport):
         self._remote = RemoteGraph()
         self._departures = Departures(self._remote)
         self._zenoh_engine: ZenohEngine | None = None
-        self._patience: Patience | None = None
+        self._patience: SessionOpener | None = None
         self._linked_at = 0.0
         self._looks = False
         self._looking = Lock()
@@ -89,9 +89,9 @@ class ZenohTransport(BackgroundTransport):
 
     def _make_engine(self) -> Engine:
         from linkwright.wire.zenoh.engine import Engine as ZenohEngine
-        from linkwright.wire.zenoh.opening import Patience
+        from linkwright.wire.zenoh.opening import SessionOpener
 
-        patience = Patience(self._logger, self._given_up)
+        patience = SessionOpener(self._logger, self._given_up)
         self._patience = patience
         engine = ZenohEngine(self._settings, self._remote, self._departures, self._work, self._logger, patience)
         self._zenoh_engine = engine
