@@ -76,7 +76,7 @@ def test_a_participant_that_goes_without_a_farewell_is_lost_with_its_publishers(
 
 def test_a_participant_whose_process_is_gone_is_lost_before_its_lease_is_over(monkeypatch):
     running = True
-    monkeypatch.setattr("linkwright.wire.dds.remote.runs", lambda _: running)
+    monkeypatch.setattr("linkwright.wire.dds.remote.is_process_running", lambda _: running)
     scene = Scene(RemoteParticipant(PARTICIPANT, peer_process=7))
     assert scene.after(0.0) == departures.LOOK_AGAIN
     running = False
@@ -90,7 +90,7 @@ def test_a_participant_whose_process_is_gone_is_lost_before_its_lease_is_over(mo
 
 
 def test_a_process_that_ends_after_it_has_left_is_not_lost(monkeypatch):
-    monkeypatch.setattr("linkwright.wire.dds.remote.runs", lambda _: False)
+    monkeypatch.setattr("linkwright.wire.dds.remote.is_process_running", lambda _: False)
     scene = Scene(RemoteParticipant(PARTICIPANT, peer_process=7))
     scene.after(0.0)
     scene.announce()

@@ -96,7 +96,7 @@ class Line:
         self.log.append(("written", sample[0], published is None))
         return self.works
 
-    def places_of(self, readers):
+    def addresses_of(self, readers):
         return {reader[:12]: ADDRESS for reader in readers}
 
     def add(self, _):

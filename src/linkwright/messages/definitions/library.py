@@ -222,7 +222,7 @@ class Library:
             now, folder = time.monotonic(), os.getcwd()  # noqa: PTH109 - a Path takes longer
             if self._own is None or folder != self._own_folder or now > self._own_until:
                 self._own, self._own_folder = PackageFinder(), folder
-            self._own_until = now + _FINDER_KEPT_S
+                self._own_until = now + _FINDER_KEPT_S
             finder = self._own
         return finder
 
