@@ -46,7 +46,7 @@ GROUPS = {
         "daemon": "accepted for compatibility with ros2; Linkwright has no daemon",
     },
     "shell and editors": {
-        "lsp": "serve editors: findings as you type, symbols, formatting",
+        "lsp": "serve editors: findings as you type, completion, hover, definitions, formatting",
         "shell": "open a shell with ros2, launch_test, xacro, check_urdf, urdf_to_graphviz, rviz2 and colcon",
         "completion": "print the completion script for bash, zsh or fish",
     },

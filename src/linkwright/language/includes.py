@@ -62,6 +62,20 @@ class IncludeIndex:
                     pending.append(other)
         return list(found) or [file]
 
+    def related(self, file: Path, texts: Mapping[Path, str]) -> list[Path]:
+        """Return a file, the descriptions that include it, and all files that these include, found by their names."""
+        by_name: dict[str, list[Path]] = {}
+        for other in dict.fromkeys((*self.files, *texts)):
+            by_name.setdefault(other.name, []).append(other)
+        found: dict[Path, None] = {}
+        pending = [file, *self.entries(file, texts)]
+        while pending:
+            current = pending.pop()
+            if current not in found:
+                found[current] = None
+                pending += [other for name in self._included(current, texts) for other in by_name.get(name, ())]
+        return list(found)
+
     def _included(self, file: Path, texts: Mapping[Path, str]) -> frozenset[str]:
         text = texts.get(file)
         if text is not None:

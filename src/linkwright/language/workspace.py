@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.language.definitions import NameDefinition, definitions_in
 from linkwright.language.includes import IncludeIndex, real
 from linkwright.lint.checking import Checker, UniqueFindings
 from linkwright.lint.contexts import Contexts
 from linkwright.lint.folders import Examined, reported, reported_of_package
 from linkwright.lint.targets import DESCRIPTIONS, Targets
-from linkwright.packages import enclosing_package
+from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.manifest import MANIFEST
 from linkwright.xmltree import Overlay
+from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.reader import read_bytes
 
 _CALLERS = (
     ".py",
@@ -46,12 +49,40 @@ class Workspace:
         self._folders = tuple(real(folder) for folder in folders)
         self.index = IncludeIndex(self._folders)
         self._checker = Checker(folders=self._folders)
+        self._names: dict[Path, tuple[int, tuple[NameDefinition, ...]]] = {}
         self._results: dict[Path, tuple[Diagnostic, ...]] = {}
 
     def file_saved(self, file: Path) -> None:
         """Note that a file on the disk was changed, made or removed."""
         if file.name.endswith(_CALLERS):
             self._checker = Checker(folders=self._folders)
+
+    def finder(self, file: Path) -> PackageFinder:
+        """Return what finds packages for a file."""
+        return self._checker.finder(file)
+
+    def names(self, file: Path, texts: Mapping[Path, str]) -> list[NameDefinition]:
+        """Return the names that a file, the descriptions that include it and their other files define.
+
+        Args:
+            file: the file.
+            texts: the texts of the open files.
+        """
+        return [name for other in self.index.related(file, texts) for name in self._names_in(other, texts)]
+
+    def _names_in(self, file: Path, texts: Mapping[Path, str]) -> tuple[NameDefinition, ...]:
+        text = texts.get(file)
+        if text is not None:
+            return tuple(definitions_in(text, file))
+        try:
+            changed_ns = file.stat().st_mtime_ns
+            known = self._names.get(file)
+            if known is None or known[0] != changed_ns:
+                text = decode(read_bytes(file), str(file))
+                known = self._names[file] = (changed_ns, tuple(definitions_in(text, file)))
+        except (OSError, LinkwrightError):
+            return ()
+        return known[1]
 
     def subjects(self, file: Path, texts: Mapping[Path, str]) -> list[Path]:
         """Return what to check when a file has changed.

@@ -17,10 +17,11 @@ from pygls.lsp.server import LanguageServer
 
 from linkwright._version import __version__
 from linkwright.diagnostics import LinkwrightError
+from linkwright.language.definitions import NameDefinition
 from linkwright.language.includes import real
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import XML_FILES
-from linkwright.lsp import fixes, texts
+from linkwright.lsp import fixes, names, texts
 from linkwright.lsp.findings import as_diagnostics
 from linkwright.lsp.positions import UTF_16, TextPositions
 from linkwright.xmltree.decoding import decode
@@ -47,6 +48,7 @@ class LinkwrightServer(LanguageServer):
         self._files: dict[Path, tuple[int, TextPositions]] = {}
         self._changed: dict[Path, None] = {}
         self._has_changes = asyncio.Event()
+        self._is_indexed = asyncio.Event()
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="check")
         self._work: asyncio.Task[None] | None = None
 
@@ -91,6 +93,13 @@ class LinkwrightServer(LanguageServer):
             return Path(), None
         return path, self.positions(path)
 
+    async def names(self, path: Path) -> list[NameDefinition]:
+        """Return the names that the description of a file defines, once the folders have been searched."""
+        if self.project is None:
+            return []
+        await self._is_indexed.wait()
+        return self.project.names(real(path), self._texts())
+
     def positions(self, path: Path) -> TextPositions | None:
         """Return the positions of a file's text, that of the editor if it is open; None if it cannot be read."""
         file = real(path)
@@ -125,6 +134,7 @@ class LinkwrightServer(LanguageServer):
     async def _check_changes(self, project: Workspace) -> None:
         """Check files as they change, the newest change first; a subject that still waits is checked once."""
         await self._in_thread(project.index.refresh)
+        self._is_indexed.set()
         pending: dict[Path, set[Path]] = {}
         while True:
             if not pending:
@@ -249,6 +259,29 @@ def _add_requests(server: LinkwrightServer) -> None:
     ) -> types.LinkedEditingRanges | None:
         _, positions = server.text(asked.text_document)
         return None if positions is None else texts.linked_tags(positions, asked.position)
+
+    @server.feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(["<", " ", '"', "/", "{", "(", ":"]))
+    async def completion(server: LinkwrightServer, asked: types.CompletionParams) -> list[types.CompletionItem] | None:
+        path, positions = server.text(asked.text_document)
+        if positions is None or server.project is None:
+            return None
+        capabilities = server.client_capabilities.text_document
+        item = capabilities.completion.completion_item if capabilities and capabilities.completion else None
+        takes_snippets = bool(item and item.snippet_support)
+        known = await server.names(path)
+        return names.completions(server.project, path, known, positions, asked.position, takes_snippets=takes_snippets)
+
+    @server.feature(types.TEXT_DOCUMENT_HOVER)
+    async def hover(server: LinkwrightServer, asked: types.HoverParams) -> types.Hover | None:
+        path, positions = server.text(asked.text_document)
+        return None if positions is None else names.hover(path, await server.names(path), positions, asked.position)
+
+    @server.feature(types.TEXT_DOCUMENT_DEFINITION)
+    async def definition(server: LinkwrightServer, asked: types.DefinitionParams) -> list[types.Location] | None:
+        path, positions = server.text(asked.text_document)
+        if positions is None:
+            return None
+        return names.definitions(await server.names(path), positions, asked.position, server.positions, server.uri_of)
 
     kinds = types.CodeActionOptions([types.CodeActionKind.QuickFix, types.CodeActionKind.SourceFixAll])
 

@@ -1,0 +1,107 @@
+"""The place of a cursor in an XML text that is being typed."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import Enum
+
+from linkwright.xmltree.tokens import Kind, Token, TokenAttribute, tokens
+
+_EXPRESSION = re.compile(r"\$\{[^{}]*$")
+_SUBSTITUTION = re.compile(r"\$\(\s*(\w*)(?:\s+([^()\s]*))?$")
+_NAME = re.compile(r"[A-Za-z_][\w.]*")
+
+
+class Spot(Enum):
+    """The kinds of places that differ for an editor."""
+
+    TAG = "tag"
+    CLOSING_TAG = "closing tag"
+    ATTRIBUTE = "attribute"
+    VALUE = "value"
+    TEXT = "text"
+    ELSEWHERE = "elsewhere"
+
+
+@dataclass(frozen=True, slots=True)
+class Cursor:
+    """A place in a text.
+
+    Attributes:
+        spot: its kind.
+        offset: the character offset.
+        tags: the names of the elements around it, from the root; the element itself is the last in its start tag.
+        token: the tag at the place; None for texts.
+        attribute: the attribute whose name or value contains the place.
+        typed: the part of the name or value before the place.
+    """
+
+    spot: Spot
+    offset: int
+    tags: tuple[str, ...]
+    token: Token | None = None
+    attribute: TokenAttribute | None = None
+    typed: str = ""
+
+    @property
+    def in_expression(self) -> bool:
+        """Whether the place is inside ``${...}``."""
+        return _EXPRESSION.search(self.typed) is not None
+
+    @property
+    def substitution(self) -> tuple[str, str] | None:
+        """The command of a ``$(...)`` around the place, and the typed part of its argument; None if there is none."""
+        found = _SUBSTITUTION.search(self.typed)
+        return None if found is None else (found[1], found[2] if found[2] is not None else "")
+
+    @property
+    def word(self) -> str:
+        """The name in an expression that is typed at the place."""
+        found = re.search(r"[A-Za-z_][\w.]*$", self.typed)
+        return found[0] if found else ""
+
+
+def cursor_at(text: str, offset: int) -> Cursor:
+    """Return the place of an offset in a text, which may be incomplete."""
+    tags: list[str] = []
+    for token in tokens(text):
+        inside = token.start < offset < token.end or (offset == token.end and not token.is_closed)
+        if inside and token.kind is Kind.END:
+            return Cursor(Spot.CLOSING_TAG, offset, tuple(tags), token, typed=text[token.start + 2 : offset])
+        if inside and token.kind is Kind.START:
+            return _in_tag(text, offset, token, (*tags, token.name))
+        if inside and token.kind is not Kind.TEXT:
+            return Cursor(Spot.ELSEWHERE, offset, tuple(tags))
+        if offset <= token.start or (token.kind is Kind.TEXT and offset <= token.end):
+            break
+        if token.kind is Kind.START and token.name and not token.is_whole:
+            tags.append(token.name)
+        elif token.kind is Kind.END and token.name in tags:
+            while tags.pop() != token.name:
+                pass
+    begin = max(text.rfind(">", 0, offset), text.rfind("<", 0, offset)) + 1
+    return Cursor(Spot.TEXT, offset, tuple(tags), typed=text[begin:offset])
+
+
+def _in_tag(text: str, offset: int, token: Token, tags: tuple[str, ...]) -> Cursor:
+    if offset <= token.name_start + len(token.name):
+        return Cursor(Spot.TAG, offset, tags[:-1], token, typed=text[token.name_start : offset])
+    for attribute in token.attributes():
+        if attribute.start <= offset <= attribute.start + len(attribute.name):
+            return Cursor(Spot.ATTRIBUTE, offset, tags, token, attribute, text[attribute.start : offset])
+        if attribute.value is not None and attribute.value_start <= offset <= attribute.value_end:
+            typed = text[attribute.value_start : offset]
+            return Cursor(Spot.VALUE, offset, tags, token, attribute, typed)
+    return Cursor(Spot.ATTRIBUTE, offset, tags, token)
+
+
+def name_at(text: str, offset: int) -> tuple[str, int] | None:
+    """Return the name of an expression around an offset, and where it starts; None if there is none."""
+    line_start = text.rfind("\n", 0, offset) + 1
+    line_end = text.find("\n", offset)
+    line = text[line_start : line_end if line_end >= 0 else len(text)]
+    for found in _NAME.finditer(line):
+        if found.start() <= offset - line_start <= found.end():
+            return found[0], line_start + found.start()
+    return None

@@ -1,0 +1,135 @@
+"""The elements and attributes that a place in a file may have: the tables of URDF and SDF, with xacro's tags."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from linkwright.schema import AttributeRule, ElementRule, ValueType
+from linkwright.sdf.worlds import SDF
+from linkwright.urdf.schema import ROBOT
+
+_TEXT = ValueType("text")
+_NAMES = ValueType("name")
+_CONDITION = ValueType("true or false")
+
+
+def _tag(name: str, meaning: str, *attributes: AttributeRule) -> ElementRule:
+    return ElementRule(f"xacro:{name}", meaning, attributes, many=True)
+
+
+XACRO = {
+    rule.tag: rule
+    for rule in (
+        _tag(
+            "property",
+            "a named value, or a block of elements",
+            AttributeRule("name", _NAMES, "the name in expressions", required=True),
+            AttributeRule("value", _TEXT, "the value, which may contain expressions", usual=True),
+            AttributeRule("default", _TEXT, "the value unless the property has one"),
+            AttributeRule("scope", ValueType("parent or global"), "where it is defined", default="local"),
+            AttributeRule("lazy_eval", _CONDITION, "whether it is evaluated when it is used", default="true"),
+        ),
+        _tag(
+            "arg",
+            "a value that the caller sets, as in xacro FILE NAME:=VALUE",
+            AttributeRule("name", _NAMES, "the name in $(arg NAME)", required=True),
+            AttributeRule("default", _TEXT, "the value if the caller gives none", usual=True),
+        ),
+        _tag(
+            "include",
+            "the content of another file",
+            AttributeRule("filename", _TEXT, "the file; relative paths start at this file", required=True),
+            AttributeRule("ns", _NAMES, "a namespace for its macros and properties"),
+            AttributeRule("optional", _CONDITION, "whether the file may be missing", default="false"),
+        ),
+        _tag(
+            "macro",
+            "a piece of XML with parameters; a call is <xacro:NAME .../>",
+            AttributeRule("name", _NAMES, "the name of the macro", required=True),
+            AttributeRule("params", _TEXT, "the parameters: a, b:=default, *block, **blocks", usual=True),
+        ),
+        _tag(
+            "if",
+            "content for a true condition",
+            AttributeRule("value", _CONDITION, "the condition", required=True),
+        ),
+        _tag(
+            "unless",
+            "content for a false condition",
+            AttributeRule("value", _CONDITION, "the condition", required=True),
+        ),
+        _tag(
+            "insert_block",
+            "a block parameter, or a property that is a block",
+            AttributeRule("name", _NAMES, "the name of the block", required=True),
+        ),
+        _tag(
+            "call",
+            "a call of a macro whose name is computed",
+            AttributeRule("macro", _TEXT, "the name of the macro", required=True),
+        ),
+        _tag(
+            "element",
+            "an element whose name is computed",
+            AttributeRule("xacro:name", _TEXT, "the name of the element", required=True),
+        ),
+        _tag(
+            "attribute",
+            "an attribute of the element around it",
+            AttributeRule("name", _TEXT, "the name of the attribute", required=True),
+            AttributeRule("value", _TEXT, "the value", required=True),
+        ),
+    )
+}
+"""The tags of xacro (ros/xacro 2.1), by name."""
+
+PREFIX = "xacro:"
+
+
+def root_of(path: Path) -> ElementRule | None:
+    """Return the rule of the root element of a file, by its name; None for other languages."""
+    name = path.name.removesuffix(".xacro")
+    if name.endswith((".sdf", ".world")):
+        return SDF
+    return ROBOT if path.name.endswith((".urdf", ".xacro")) and not name.endswith((".srdf", ".launch")) else None
+
+
+def rule_at(root: ElementRule, tags: Sequence[str]) -> ElementRule | None:
+    """Return the rule of an element.
+
+    Content of xacro's tags and of macro calls is that of the element around them; the content of a macro may belong to
+    any element, so the first tag in it that URDF has anywhere decides.
+
+    Args:
+        root: the rule of the root element.
+        tags: the names of the elements from the root to the element.
+    """
+    current: ElementRule | None = None
+    for tag in tags:
+        if tag.startswith(PREFIX):
+            continue
+        if current is None:
+            current = root if tag == root.tag else _anywhere(root, tag)
+        else:
+            current = current.child_rules.get(tag) or _in_macro(root, tags, tag)
+        if current is None:
+            return None
+    return current
+
+
+def _in_macro(root: ElementRule, tags: Sequence[str], tag: str) -> ElementRule | None:
+    return _anywhere(root, tag) if "xacro:macro" in tags else None
+
+
+def _anywhere(root: ElementRule, tag: str) -> ElementRule | None:
+    """Return the rule with a tag that is nearest to the root."""
+    pending, seen = [root], {id(root)}
+    for rule in pending:
+        if rule.tag == tag:
+            return rule
+        for child in rule.child_rules.values():
+            if id(child) not in seen:
+                seen.add(id(child))
+                pending.append(child)
+    return None

@@ -1,0 +1,100 @@
+"""Requests about names: completion, hover and definition."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from pathlib import Path
+
+from lsprotocol import types
+
+from linkwright.diagnostics.translation import localized
+from linkwright.language.completion import Completion, ItemKind, complete
+from linkwright.language.definitions import NameDefinition
+from linkwright.language.hover import definitions_at, explain_at
+from linkwright.language.workspace import Workspace
+from linkwright.lsp.positions import TextPositions
+
+_KINDS = {
+    ItemKind.ELEMENT: types.CompletionItemKind.Class,
+    ItemKind.ATTRIBUTE: types.CompletionItemKind.Property,
+    ItemKind.VALUE: types.CompletionItemKind.EnumMember,
+    ItemKind.MACRO: types.CompletionItemKind.Function,
+    ItemKind.PROPERTY: types.CompletionItemKind.Variable,
+    ItemKind.FUNCTION: types.CompletionItemKind.Function,
+    ItemKind.NAME: types.CompletionItemKind.Reference,
+    ItemKind.PACKAGE: types.CompletionItemKind.Module,
+    ItemKind.FILE: types.CompletionItemKind.File,
+    ItemKind.FOLDER: types.CompletionItemKind.Folder,
+}
+
+
+def completions(
+    project: Workspace,
+    path: Path,
+    names: Sequence[NameDefinition],
+    positions: TextPositions,
+    place: types.Position,
+    *,
+    takes_snippets: bool,
+) -> list[types.CompletionItem]:
+    """Return the completions at a place.
+
+    Args:
+        project: the files of the editor.
+        path: the file.
+        names: the names that the description defines.
+        positions: the text of the file.
+        place: the place.
+        takes_snippets: whether the editor understands snippets.
+    """
+    offset = positions.offset(place)
+    found = complete(positions.text, offset, path, names, partial(project.finder, path))
+    return [_item(item, positions, offset, takes_snippets=takes_snippets) for item in found]
+
+
+def _item(item: Completion, positions: TextPositions, offset: int, *, takes_snippets: bool) -> types.CompletionItem:
+    is_snippet = bool(item.snippet) and takes_snippets
+    edit = types.TextEdit(positions.range(item.start, offset), item.snippet if is_snippet else item.label)
+    return types.CompletionItem(
+        item.label,
+        kind=_KINDS[item.kind],
+        detail=item.detail or None,
+        documentation=_markdown(item.description) if item.description else None,
+        insert_text_format=types.InsertTextFormat.Snippet if is_snippet else types.InsertTextFormat.PlainText,
+        filter_text=f"<{item.label}" if item.snippet.startswith("<") else None,
+        text_edit=edit,
+    )
+
+
+def hover(
+    path: Path, names: Sequence[NameDefinition], positions: TextPositions, place: types.Position
+) -> types.Hover | None:
+    """Return the explanation of a place; None if there is none."""
+    found = explain_at(positions.text, positions.offset(place), path, names)
+    return None if found is None else types.Hover(_markdown(found.text), positions.range(found.start, found.end))
+
+
+def definitions(
+    names: Sequence[NameDefinition],
+    positions: TextPositions,
+    place: types.Position,
+    text_of: Callable[[Path], TextPositions | None],
+    uri: Callable[[Path], str],
+) -> list[types.Location]:
+    """Return where the name at a place is defined."""
+    found = definitions_at(positions.text, positions.offset(place), names)
+    return [*_locations(found, text_of, uri)]
+
+
+def _locations(
+    names: Iterable[NameDefinition], text_of: Callable[[Path], TextPositions | None], uri: Callable[[Path], str]
+) -> Iterable[types.Location]:
+    for name in names:
+        own = text_of(name.file)
+        if own is not None:
+            yield types.Location(uri(name.file), own.range(name.start, name.start + len(name.name)))
+
+
+def _markdown(text: str) -> types.MarkupContent:
+    return types.MarkupContent(types.MarkupKind.Markdown, localized(text))
