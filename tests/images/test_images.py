@@ -135,6 +135,8 @@ def test_a_large_image_is_thinned():
     thinned = decoded.thinned(30)
     assert (thinned.width, thinned.height) == (5, 5)
     assert thinned.pixels[1].tolist() == [20, 22, 24, 26, 28]
+    odd = DecodedImage(np.zeros((5, 5), np.uint8)).thinned(4)
+    assert (odd.width, odd.height) == (2, 2)
 
 
 @pytest.mark.parametrize("step", [2, 3, 16, 99])

@@ -193,6 +193,8 @@ def test_a_file_that_changed_meanwhile_is_left_alone(tmp_path):
     robot = load(path)
     path.write_text('<robot name="other"><link name="a"/></robot>')
     assert write_inertials(robot, {"a": CUBE}).refused == {"a": "its file has changed since it was read"}
+    path.write_text('<robot name="s"><link name="a"/></robot>')  # as long as before
+    assert write_inertials(robot, {"a": CUBE}).refused == {"a": "its file has changed since it was read"}
     path.unlink()
     assert write_inertials(robot, {"a": CUBE}).refused == {"a": "it is not written in a file"}
 

@@ -84,7 +84,7 @@ class DecodedImage:
     def thinned(self, most_pixels: int) -> DecodedImage:
         """Return every n-th pixel of each row and column, with the smallest n for at most `most_pixels` pixels."""
         step = 1
-        while (self.width // step) * (self.height // step) > most_pixels:
+        while -(-self.width // step) * -(-self.height // step) > most_pixels:
             step += 1
         return self if step == 1 else DecodedImage(np.ascontiguousarray(self.pixels[::step, ::step]))
 

@@ -93,7 +93,7 @@ def _place(link: Link) -> tuple[str, int]:
 def _current(file: str, text: str) -> str:
     """Return the current text of a file, with its byte order mark.
 
-    Refuses a file whose length has changed.
+    Refuses a file that has changed.
     """
     try:
         now = read_bytes(file).decode("utf-8")
@@ -101,7 +101,7 @@ def _current(file: str, text: str) -> str:
         raise NotWritableError(phrase("its file is not UTF-8")) from None
     except LinkwrightError:
         raise NotWritableError(phrase("it is not written in a file")) from None
-    if len(now.removeprefix(_BYTE_ORDER_MARK)) != len(text):
+    if now.removeprefix(_BYTE_ORDER_MARK) != text:
         raise NotWritableError(phrase("its file has changed since it was read"))
     return now
 

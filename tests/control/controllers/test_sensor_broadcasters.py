@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import nan
+from types import SimpleNamespace
 
 import pytest
 
@@ -113,6 +114,12 @@ async def test_a_pose_and_its_transform(stand):
     stand.states["tcp/position.x"].value = nan
     await stand.step(broadcaster, count=10)
     assert (len(poses), len(transforms)) == (20, 2)
+    stand.states["tcp/position.x"].value = 1.0
+    published: list[object] = []
+    broadcaster._transforms = SimpleNamespace(is_wanted=True, publish=published.append)
+    for time_ns in (10**12, 10**6, 2 * 10**6):  # simulated time is reset after the first
+        broadcaster.update(time_ns, 0.01)
+    assert [message.transforms[0].header.stamp.sec for message in published] == [1000, 0]
 
 
 @pytest.mark.parametrize(("kind", "name"), [(ForceTorqueBroadcaster, "sensor_name"), (PoseBroadcaster, "pose_name")])

@@ -324,13 +324,15 @@ class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
     def update(self, time_ns: int, period_s: float) -> None:
         """Publish the pose, and the transform if it is due and known."""
         super().update(time_ns, period_s)
-        if self._transforms is None or not self._child or time_ns < self._next_transform_ns:
+        rate = self.parameters.tf.publish_rate
+        period_ns = round(NANOSECONDS_PER_SECOND / rate) if rate else 0
+        waits = 0 < self._next_transform_ns - time_ns <= period_ns  # longer after simulated time was reset
+        if self._transforms is None or not self._child or waits:
             return
         values = [state.value for state in self.states]
         if not self._transforms.is_wanted or not all(map(isfinite, values)):
             return
-        rate = self.parameters.tf.publish_rate
-        self._next_transform_ns = time_ns + (round(NANOSECONDS_PER_SECOND / rate) if rate else 0)
+        self._next_transform_ns = time_ns + period_ns
         transform = Transform(_vector(values), Quaternion(*values[3:]))
         stamped = TransformStamped(self.header(time_ns), self._child, transform)
         self._transforms.publish(get_message("tf2_msgs/msg/TFMessage")([stamped]))
