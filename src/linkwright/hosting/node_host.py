@@ -10,10 +10,10 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.hosting.followed_files import FollowedFiles
 from linkwright.hosting.launch_log import SCREEN, output_destinations
 from linkwright.hosting.network import Network, SharedNames
 from linkwright.hosting.plans import HostedPlan, Supervisor
+from linkwright.hosting.reload import FollowedFiles
 from linkwright.hosting.viewer_host import ViewerHost, load_viewer
 
 if TYPE_CHECKING:
@@ -202,7 +202,7 @@ class NodeHost:
         self._process_of_logger[running.node.get_logger().name] = process_name
         self._bind_descriptions(process_name, running, parameters)
         if isinstance(running, NodeWithFiles):
-            running.follow_files(FollowedFiles(self._session, lambda: self.launcher_node))
+            running.follow_files(FollowedFiles(self._session.reload, self._session.spawn, lambda: self.launcher_node))
         self._viewers.attach_panel(running)
 
     def _not_started(self, plan: HostedPlan, error: LinkwrightError) -> None:

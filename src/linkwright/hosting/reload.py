@@ -9,12 +9,17 @@ from __future__ import annotations
 import asyncio
 import stat
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Awaitable, Callable, Coroutine, Iterable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, has_errors
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.xacro_calls import Descriptions, XacroCall
+
+if TYPE_CHECKING:
+    from linkwright.graph import Node
+    from linkwright.nodes.followed_files import ReadWorld
 
 _SETTLE_SECONDS = 0.06
 """Wait before a failure is reported: an editor may be in the middle of writing."""
@@ -35,13 +40,16 @@ class LiveReload:
     """Watches the files of a launch's descriptions.
 
     Args:
-        descriptions: expands the descriptions.
+        descriptions: the descriptions of the launch.
         show: called with all current findings, which the viewer shows.
         log: where findings are printed.
+
+    Attributes:
+        descriptions: expands the descriptions.
     """
 
     def __init__(self, descriptions: Descriptions, show: Callable[[list[Diagnostic]], None], log: LaunchLog) -> None:
-        self._descriptions = descriptions
+        self.descriptions = descriptions
         self._show = show
         self._log = log
         self._targets: dict[XacroCall, list[Apply]] = {}
@@ -103,7 +111,7 @@ class LiveReload:
 
     def _files_of_interest(self, call: XacroCall) -> set[Path]:
         """Return the files from which a description was read, and those named in its errors."""
-        files = {call.path, *self._descriptions.files_of(call)}
+        files = {call.path, *self.descriptions.files_of(call)}
         for finding in self._findings.get(call, ()):
             spans = (finding.span, *(note.span for note in finding.notes))
             files.update(Path(span.file) for span in spans if span and not span.file.startswith("<"))
@@ -123,7 +131,7 @@ class LiveReload:
     def _catch_up(self) -> None:
         """Reload the files that were saved or removed after they were read and before the watch began."""
         for call in self._targets if not self._closed else ():
-            read_ns = self._descriptions.read_ns(call)
+            read_ns = self.descriptions.read_ns(call)
             saved = [_saved_ns(path) for path in self._files_of_interest(call)]
             if max(saved) > read_ns or (0 in saved and not self._is_broken(call)):
                 self._start_reload(call)
@@ -139,7 +147,7 @@ class LiveReload:
                 self._saved.add(call)
             if self._is_broken(call):
                 # Any file next to it, and any package, may be the missing one.
-                self._descriptions.finder.forget()
+                self.descriptions.finder.forget()
                 self._start_reload(call)
             elif call in self._saved:
                 self._start_reload(call)
@@ -183,10 +191,10 @@ class LiveReload:
         """Return the text and the findings about it; no text if the model has no robot."""
         loop = asyncio.get_running_loop()
         try:
-            description = await loop.run_in_executor(None, self._descriptions.read, call)
+            description = await loop.run_in_executor(None, self.descriptions.read, call)
         except LinkwrightError as error:
             return None, error.diagnostics
-        return self._descriptions.take(call, description)
+        return self.descriptions.take(call, description)
 
     def _apply(self, call: XacroCall, text: str, findings: tuple[Diagnostic, ...]) -> None:
         was_broken = self._is_broken(call)
@@ -315,3 +323,53 @@ def real(path: Path) -> Path:
         return path.resolve()
     except OSError:
         return path
+
+
+class FollowedFiles:
+    """Watches the files of one node, as its `FileFollower`.
+
+    Args:
+        reload: the live reload of the run to which the node belongs.
+        spawn: runs a coroutine in the background of the run.
+        launcher: returns the node that calls services.
+    """
+
+    def __init__(
+        self, reload: LiveReload, spawn: Callable[[Coroutine[Any, Any, None]], None], launcher: Callable[[], Node]
+    ) -> None:
+        self._reload = reload
+        self._spawn = spawn
+        self._launcher = launcher
+        self._followed: set[tuple[XacroCall, str]] = set()
+
+    @property
+    def launcher_node(self) -> Node:
+        """The launcher's own node, which calls services."""
+        return self._launcher()
+
+    def show(self, about: str, findings: Iterable[Diagnostic]) -> None:
+        """Show the current findings about a subject in the viewers."""
+        self._reload.show(about, findings)
+
+    def follow_world(
+        self,
+        world: ReadWorld,
+        read: Callable[[str], ReadWorld],
+        load: Callable[[str], Awaitable[Sequence[Diagnostic]]],
+    ) -> None:
+        """Read the file of a world when it is saved, and load it if it has no new errors."""
+        call = self._reload.descriptions.begin_with(world, read)
+
+        async def load_saved(path: str) -> None:
+            findings = await load(path)
+            if findings:
+                self._reload.report(call, findings)
+
+        self._reload.bind(call, lambda path: self._spawn(load_saved(path)))
+
+    def follow_text(self, text: str, name: str, renew: Callable[[str], None]) -> None:
+        """Call back with each new text of a description, if this process expanded it from a file."""
+        call = self._reload.descriptions.call_of(text)
+        if call is not None and (call, name) not in self._followed:
+            self._followed.add((call, name))
+            self._reload.bind(call, renew)

@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from linkwright.geometry.mass import LEAST_MASS, MassProperties
-from linkwright.inertia.magnitudes import is_computable
 from linkwright.urdf import Inertial, Pose
 
 
 def has_mass(inertial: Inertial) -> bool:
     """Return whether an ``<inertial>`` has a mass that can be distributed over a shape."""
-    return is_computable(inertial) and inertial.mass > LEAST_MASS
+    return inertial.is_computable and inertial.mass > LEAST_MASS
 
 
 def from_inertial(inertial: Inertial) -> MassProperties:

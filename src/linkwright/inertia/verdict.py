@@ -13,7 +13,6 @@ from linkwright.geometry.validity import HEAVIEST_DENSITY, LIGHTEST_DENSITY, pro
 from linkwright.inertia.comparison import Comparison, compare
 from linkwright.inertia.estimation import Estimate
 from linkwright.inertia.inertial import from_inertial
-from linkwright.inertia.magnitudes import is_computable
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.urdf import Link, Mesh
 from linkwright.urdf.bodies import Bodies
@@ -86,7 +85,7 @@ def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
     """
     if link.inertial is None:
         return _without(link, bodies)
-    if not is_computable(link.inertial):
+    if not link.inertial.is_computable:
         return Verdict(Standing.IMPOSSIBLE, phrase("its numbers are out of range"))
     present = from_inertial(link.inertial)
     shapes = link.collisions if found.kind == "collision" else link.visuals

@@ -7,7 +7,6 @@ from functools import cached_property
 from math import prod
 
 from linkwright.geometry.shapes import FARTHEST, IDENTITY, Bounds, Placement, bounds_of, placement, union, volume_of
-from linkwright.inertia.magnitudes import is_computable
 from linkwright.lint.meshes import MeshFacts
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.urdf import Collision, Inertial, Link, Mesh, Visual
@@ -52,7 +51,7 @@ class Extents:
             if (inertial := link.inertial) is not None
             and (link.visuals or link.collisions)
             and (body := self._bodies.of(link.name)) is not None
-            and is_computable(inertial)
+            and inertial.is_computable
             and inertial.mass >= max(WEIGHTLESS, _NEGLIGIBLE * self._bodies.mass(body))
             and WORLD not in body.links
         ]
@@ -74,7 +73,7 @@ class Extents:
         parts = []
         for link, frame in zip(self._bodies.members(body), body.frames.values(), strict=True):
             inertial = link.inertial
-            if inertial is not None and inertial.mass > 0 and is_computable(inertial):
+            if inertial is not None and inertial.mass > 0 and inertial.is_computable:
                 own = from_inertial(inertial)
                 rotation = np.array(frame.rotation)
                 center = rotation @ own.center + np.array(_clamped(frame).position)

@@ -226,9 +226,8 @@ def link_inertia(inertial: Inertial | None) -> LinkInertia | None:
     if inertial is None:
         return None
     from linkwright.inertia.inertial import from_inertial  # here, because few pages ask for inertias
-    from linkwright.inertia.magnitudes import is_computable
 
-    if not is_computable(inertial):
+    if not inertial.is_computable:
         return None
     properties = from_inertial(inertial)
     box = properties.equivalent_box()
