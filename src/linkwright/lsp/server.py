@@ -6,7 +6,7 @@ import asyncio
 import logging
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import TypeVar
 from urllib.parse import unquote, urlsplit
@@ -143,7 +143,7 @@ class LinkwrightServer(LanguageServer):
             changed, self._changed = self._changed, {}
             texts = self._texts()
             for file in changed:
-                subjects = await self._in_thread(partial(project.subjects, file, texts))
+                subjects = await self._attempt(partial(project.subjects, file, texts), file) or []
                 pending = {subject: pending.get(subject, set()) for subject in (*subjects, *pending)}
                 for subject in subjects or [file]:
                     pending.setdefault(subject, set()).add(file)
@@ -152,13 +152,10 @@ class LinkwrightServer(LanguageServer):
                 await self._check(project, subject, texts, pending.pop(subject))
 
     async def _check(self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
-        """Check one subject, and publish its findings; a fault of ours is logged, and the server continues."""
-        try:
-            found = await self._in_thread(partial(project.check, subject, texts, changed))
-        except Exception:  # noqa: BLE001 - the editor continues to work, and the log has the reason
-            _log.exception("The check of '%s' failed", subject)
-            return
-        for file, findings in found.items():
+        """Check one subject, and publish its findings."""
+        found = await self._attempt(partial(project.check, subject, texts, changed), subject)
+        positions = cache(self.positions)
+        for file, findings in (found or {}).items():
             uri = self.uri_of(file)
             document = self.workspace.text_documents.get(uri)
             if document is not None and texts.get(file) != document.source:
@@ -166,10 +163,18 @@ class LinkwrightServer(LanguageServer):
             self.text_document_publish_diagnostics(
                 types.PublishDiagnosticsParams(
                     uri,
-                    as_diagnostics(findings, self.positions, self.uri_of),
+                    as_diagnostics(findings, positions, self.uri_of),
                     None if document is None else document.version,
                 )
             )
+
+    async def _attempt(self, work: Callable[[], T], about: Path) -> T | None:
+        """Return the result of work in the thread; a fault of ours is logged, and the server continues."""
+        try:
+            return await self._in_thread(work)
+        except Exception:  # noqa: BLE001 - the editor continues to work, and the log has the reason
+            _log.exception("The check of '%s' failed", about)
+            return None
 
     async def _in_thread(self, work: Callable[[], T]) -> T:
         return await asyncio.get_running_loop().run_in_executor(self._thread, work)

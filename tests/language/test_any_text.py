@@ -1,0 +1,56 @@
+"""Requests about texts that are being typed: any state of a text, and any place in it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.language.completion import complete
+from linkwright.language.definitions import definitions_in
+from linkwright.language.hover import definitions_at, explain_at
+from linkwright.lsp.positions import TextPositions
+from linkwright.lsp.texts import folds, format_edits, linked_tags, selections, symbols
+from linkwright.packages import PackageFinder
+
+ROBOT = (Path(__file__).parents[2] / "robots/my_robot_description/urdf/mbot_gazebo.xacro").read_text(encoding="utf-8")
+FINDER = PackageFinder(start=[Path(__file__).parents[2] / "robots"])
+CUT = st.tuples(st.integers(0, len(ROBOT)), st.integers(0, 40), st.text("<>/=\"' ${}()\n机a", max_size=8))
+
+
+@given(CUT, st.sampled_from(["robot.xacro", "robot.urdf", "robot.world", "robot.srdf"]))
+def test_no_state_of_a_text_is_too_much(cut, name):
+    start, length, typed = cut
+    text = ROBOT[:start] + typed + ROBOT[start + length :]
+    offset = start + len(typed)
+    file = Path(name)
+    names = [*definitions_in(text, file)]
+    for item in complete(text, offset, file, names, lambda: FINDER):
+        assert 0 <= item.start <= offset
+    explained = explain_at(text, offset, file, names)
+    assert explained is None or explained.start <= explained.end <= len(text)
+    assert set(definitions_at(text, offset, names)) <= set(names)
+    positions = TextPositions(text)
+    place = positions.position(offset)
+    assert positions.offset(place) == offset
+    assert all(fold.start_line < fold.end_line for fold in folds(positions))
+    (selection,) = selections(positions, [place])
+    while selection.parent is not None:
+        inner, outer = selection.range, selection.parent.range
+        assert outer.start <= inner.start
+        assert inner.end <= outer.end
+        selection = selection.parent
+    symbols(positions)
+    linked_tags(positions, place)
+    format_edits(positions, file)
+
+
+LINES = st.lists(st.sampled_from(["a", "机", "🤖", "<", "\n", "\r\n"]), max_size=30).map("".join)
+
+
+@given(LINES, st.sampled_from(["utf-8", "utf-16", "utf-32"]), st.data())
+def test_positions_and_offsets_agree_in_each_encoding(text, encoding, data):
+    offset = data.draw(st.integers(0, len(text)).filter(lambda at: text[at - 1 : at + 1] != "\r\n"))
+    positions = TextPositions(text, encoding)
+    assert positions.offset(positions.position(offset)) == offset
