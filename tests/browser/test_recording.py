@@ -178,5 +178,5 @@ def test_a_folder_that_is_gone_is_said_on_the_page(start, open_page, tmp_path: P
     folder.rename(tmp_path / "away")
     folder.write_text("a file in its place")
     choose(page, "Record all topics")
-    expect(page.get_by_role("dialog")).to_contain_text("cannot be made")
+    expect(page.get_by_role("dialog")).to_contain_text("cannot be created")
     assert state(page, "recording")["path"] == ""
