@@ -46,9 +46,9 @@ INDEX = f"""\
 
 {_MARK}
 
-What `linkwright check` looks for besides what makes a file no robot at all. [Checking](checking.md) tells how rules are
-selected, configured and suppressed. `linkwright explain CODE` prints what stands on these pages. A rule that is *off*
-runs when it is selected.
+The rules of `linkwright check`. [Checking](checking.md) describes how to select, configure and suppress them, and [Rules of
+your own](own-rules.md) how to add some. `linkwright explain CODE` prints the text of these pages. A rule marked *off* runs
+only if it is selected.
 
 The codes of the readers themselves (`XML`, `XAC`, `URDF` and others) are on [a page of their own](rules/{OTHERS}.md).
 """

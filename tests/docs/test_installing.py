@@ -19,6 +19,7 @@ INSTALLING = re.compile(r"\b(?:pip|pipx|uv tool) install (?P<what>(?:-e )?(?:'[^
 OTHERS = {
     "--no-index",
     "-e street_displays",
+    "-e team_rules",
     "ai-edge-litert",
     "linkwright_core-0.1.0-py3-none-any.whl",
     "path/to/linkwright",

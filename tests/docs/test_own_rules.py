@@ -1,0 +1,68 @@
+"""The rule that the page about rules of one's own shows works as the page says."""
+
+from __future__ import annotations
+
+import runpy
+import sys
+
+import pytest
+
+from linkwright.lint import check, registry
+from linkwright.lint.explain import find_page
+from linkwright.loading import extensions
+from tests.docs.pages import DOCS, blocks
+from tests.toml_files import read_toml
+
+PAGES = (DOCS / "own-rules.md", DOCS / "zh" / "own-rules.md")
+
+
+@pytest.fixture(params=PAGES, ids=["en", "zh"])
+def team(request, tmp_path, monkeypatch):
+    """The package of the page, installed; returns its folder."""
+    for block in blocks(request.param):
+        if block.title:
+            (tmp_path / block.title).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / block.title).write_text(block.text, encoding="utf-8")
+    folder = tmp_path / "team_rules"
+    facts = folder / "team_rules-1.0.dist-info"
+    facts.mkdir()
+    (facts / "METADATA").write_text("Metadata-Version: 2.1\nName: team-rules\nVersion: 1.0\n")
+    points = read_toml((folder / "pyproject.toml").read_text())["project"]["entry-points"]["linkwright.lint_rules"]
+    lines = ["[linkwright.lint_rules]", *(f"{name} = {value}" for name, value in points.items()), ""]
+    (facts / "entry_points.txt").write_text("\n".join(lines))
+    monkeypatch.syspath_prepend(str(folder))
+    _forget()
+    yield folder
+    monkeypatch.undo()
+    _forget()
+
+
+def _forget() -> None:
+    sys.modules.pop("team_rules", None)
+    for cached in (extensions._all_groups, registry._found, registry._index):
+        cached.cache_clear()
+
+
+def test_the_tests_shown_pass(team, tmp_path):
+    shown = runpy.run_path(str(team / "test_team_rules.py"))
+    tests = [value for name, value in shown.items() if name.startswith("test_")]
+    assert len(tests) == 2
+    for number, test in enumerate(tests):
+        (tmp_path / str(number)).mkdir()
+        test(tmp_path / str(number))
+
+
+def test_the_finding_is_the_one_shown_and_outside_a_package_there_is_none(team, tmp_path):
+    assert [each for each in check('<robot name="crane"><link name="hook"/></robot>') if each.code == "TEAM001"] == []
+    package = tmp_path / "crane_description"
+    package.mkdir()
+    (package / "package.xml").write_text("<package format='3'><name>crane_description</name></package>")
+    (package / "crane.urdf").write_text('<robot name="crane"><link name="hook"/></robot>')
+    (found,) = [each for each in check(package / "crane.urdf") if each.code == "TEAM001"]
+    text = next(block.text for block in blocks(PAGES[0]) if "TEAM001]" in block.text)
+    assert found.message in text
+    assert found.hint in text
+
+
+def test_its_page_is_its_docstring(team):
+    assert "Two descriptions with the same link names" in str(find_page("link-without-prefix"))
