@@ -18,6 +18,7 @@ RECORDS = REPOSITORY / "docs" / "decisions"
 INSTALLING = re.compile(r"\b(?:pip|pipx|uv tool) install (?P<what>(?:-e )?(?:'[^'\n]+'|[^\s`'）)]+))")
 OTHERS = {
     "--no-index",
+    "-e my_wind",
     "-e street_displays",
     "-e team_rules",
     "ai-edge-litert",
