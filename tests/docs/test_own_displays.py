@@ -117,7 +117,7 @@ async def test_what_is_seen_is_drawn_and_what_is_gone_goes(street):
         publisher.publish(seen(car(2, -4.0, speed=math.inf)))
         await w.settle()
         assert list(shown_markers(display)) == ["boxes/2"]
-        assert w.status("TrackedObjects")["Speed"] == ("warn", "The speed of object 2 cannot be")
+        assert w.status("TrackedObjects")["Speed"] == ("warn", "The speed of object 2 is impossible")
         publisher.publish(seen(car(3, math.nan)))
         await w.settle()
         status = w.status("TrackedObjects")
