@@ -113,7 +113,7 @@ def test_an_old_robot_in_the_same_place_is_not_seen(start, open_page, files):
     old, new = files
     old.write_text(NEW, encoding="utf-8")
     page = open_page(start("view", str(old), str(new)))
-    page.get_by_text("are equal").wait_for()
+    page.get_by_text("are identical").wait_for()
     both = pixels(page)
     assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in both) > 100, "the robot is seen"
     show(page, "Show the old robot", on=False)
