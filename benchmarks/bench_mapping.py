@@ -18,7 +18,7 @@ from tests.navigation.nodes import house
 from benchmarks.measure import Row
 from linkwright.geometry.single import rpy_from_quaternion
 from linkwright.navigation.nodes.slam_toolbox.nodes import AsyncSlamToolbox
-from linkwright.navigation.slam.poses import relative_pose, compose
+from linkwright.navigation.slam.poses import compose, relative_pose
 from linkwright.nodes import NodeOptions
 
 QUALITIES = {

@@ -46,9 +46,9 @@ INDEX = f"""\
 
 {_MARK}
 
-The rules of `linkwright check`. [Checking](checking.md) describes how to select, configure and suppress them, and [Rules of
-your own](own-rules.md) how to add some. `linkwright explain CODE` prints the text of these pages. A rule marked *off* runs
-only if it is selected.
+The rules of `linkwright check`. [Checking](checking.md) describes how to select, configure and suppress them, and
+[Rules of your own](own-rules.md) how to add some. `linkwright explain CODE` prints the text of these pages. A rule
+marked *off* runs only if it is selected.
 
 The codes of the readers themselves (`XML`, `XAC`, `URDF` and others) are on [a page of their own](rules/{OTHERS}.md).
 """
