@@ -93,3 +93,28 @@ def test_of_rules_that_cannot_be_used_one_warning_tells(installed, robot, text, 
     assert (found.code, found.severity.value) == ("LINT301", "warning")
     assert found.message.startswith("the rules of 'team_rules' cannot be used: ")
     assert reason in found.message
+
+
+BROKEN = '''
+
+class Broken(Rule):
+    """A rule with a fault."""
+
+    code = "TEAM003"
+    name = "broken"
+
+    def check(self, subject):
+        yield self.report("before", subject.root)
+        {fault}
+'''
+
+
+@pytest.mark.parametrize("fault", ["subject.nothing", "raise KeyError(1)", "yield None"])
+def test_a_rule_that_fails_is_reported_with_its_place_and_the_others_run(installed, robot, fault):
+    installed(RULES + BROKEN.format(fault=fault))
+    ours, failed = sorted(check(robot), key=lambda finding: finding.code, reverse=True)
+    assert (ours.code, failed.code, failed.severity.value) == ("TEAM001", "LINT304", "error")
+    assert failed.message.startswith("rule TEAM003 of the module 'team_rules' failed: ")
+    if fault != "yield None":
+        assert failed.span.file.endswith("team_rules.py")
+        assert (RULES + BROKEN.format(fault=fault)).splitlines()[failed.span.line - 1].strip() == fault

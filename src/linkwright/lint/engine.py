@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from linkwright.descriptions import Description, Packages, examine_world, is_world
@@ -15,7 +15,14 @@ from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lint.finding import Finding
 from linkwright.lint.missing_files import with_file_severity
 from linkwright.lint.missing_packages import with_package_severity
-from linkwright.lint.registry import find_rule, has_rules_of_others, rules_of, unusable_rules
+from linkwright.lint.registry import (
+    failed_rule,
+    find_rule,
+    has_rules_of_others,
+    is_of_others,
+    rules_of,
+    unusable_rules,
+)
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.settings import Settings
 from linkwright.lint.subject import Subject
@@ -178,15 +185,30 @@ def _run_rules(subject: Subject, scopes: Collection[Scope], suppressions: Suppre
             continue
         if not _may_run(rule, subject):
             continue
-        for diagnostic in _found_by(rule, subject):
-            if diagnostic.code != rule.code:
-                raise ValueError(f"{rule.code} reported a finding of {diagnostic.code}")
-            found.append(_with_trail(diagnostic))
+        found += map(_with_trail, _found_by(rule, subject))
     unread = subject.meshes.unread.diagnostics if subject.meshes.unread else ()
     return [*_without_repetitions(found), *(each.with_changes(severity=Severity.INFO) for each in unread)]
 
 
-def _found_by(rule: Rule, subject: Subject) -> Iterable[Diagnostic]:
+def _found_by(rule: Rule, subject: Subject) -> Sequence[Diagnostic]:
+    """Return the findings of a rule; one about the rule itself if it is another package's, and fails."""
+    try:
+        found = tuple(_reported(rule, subject))
+        _check_codes(rule, found)
+    except Exception as error:
+        if is_of_others(rule):
+            return (failed_rule(rule, error),)
+        raise
+    return found
+
+
+def _check_codes(rule: Rule, found: Iterable[Diagnostic]) -> None:
+    for diagnostic in found:
+        if diagnostic.code != rule.code:
+            raise ValueError(f"{rule.code} reported a finding of {diagnostic.code}")
+
+
+def _reported(rule: Rule, subject: Subject) -> Iterable[Diagnostic]:
     if not rule.of_sources or subject.expansion is None:
         return rule.check(subject)
     known = subject.xacro.found

@@ -11,7 +11,7 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
+from linkwright.diagnostics import Diagnostic, Severity, Span, foreign, phrase
 from linkwright.lint.rule import Rule, Scope
 from linkwright.loading.extensions import EntryPoint, extensions
 from linkwright.loading.lean_patterns import lazy_pattern
@@ -47,7 +47,27 @@ def unusable_rules() -> tuple[Diagnostic, ...]:
 
 def has_rules_of_others() -> bool:
     """Return whether another package adds rules, which may check anything."""
-    return any(not rule.code.startswith(_OURS) for rule in _found(whole=False)[0])
+    return any(is_of_others(rule) for rule in _found(whole=False)[0])
+
+
+def is_of_others(rule: Rule) -> bool:
+    """Return whether a rule belongs to another package."""
+    return not rule.code.startswith(_OURS)
+
+
+def failed_rule(rule: Rule, error: Exception) -> Diagnostic:
+    """Return the error (LINT304) about a rule of another package that raised an exception."""
+    reason = foreign(f"{type(error).__name__}: {error}")
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None and trace.tb_frame.f_globals["__name__"] != rule.__module__:
+        trace = trace.tb_next
+    message = phrase(
+        "rule {code} of the module '{module}' failed: {reason}", code=rule.code, module=rule.__module__, reason=reason
+    )
+    if trace is None:
+        return Diagnostic("LINT304", message)
+    line = trace.tb_lineno
+    return Diagnostic("LINT304", message, Span(trace.tb_frame.f_code.co_filename, line, 1, line, 2))
 
 
 def find_rule(code_or_name: str) -> Rule | None:
