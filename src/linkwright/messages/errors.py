@@ -6,7 +6,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase
 
 
 class InterfaceNotFoundError(LinkwrightError):
-    """Raised when no message, service or action has a name."""
+    """Raised when no message, service or action has the given name."""
 
 
 class DefinitionError(LinkwrightError):
@@ -14,7 +14,7 @@ class DefinitionError(LinkwrightError):
 
 
 class MessageDataError(LinkwrightError, ValueError):
-    """Raised when bytes are not a message of the type, or a message cannot be serialized."""
+    """Raised when bytes are not a message of the expected type, or a message cannot be serialized."""
 
 
 class FieldValueError(LinkwrightError, ValueError):
@@ -22,11 +22,11 @@ class FieldValueError(LinkwrightError, ValueError):
 
 
 class UnknownFieldError(FieldValueError, AttributeError):
-    """Raised when a message lacks a field."""
+    """Raised when a message has no field with the given name."""
 
 
 class WrongValueError(FieldValueError, TypeError):
-    """Raised when a field cannot have a value."""
+    """Raised when a value is invalid for its field."""
 
 
 def data_error(code: str, message: Phrase) -> MessageDataError:

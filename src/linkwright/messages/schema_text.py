@@ -43,7 +43,7 @@ def _text(type_name: str) -> str:
         base = field.type.base
         package, _, name = base.rpartition("/")
         spelled = field.type.to_msg_text()
-        if "/srv" in package:  # names of messages have two parts here, so the kind would be lost
+        if "/srv" in package:  # to_msg_text leaves the kind out of the name; requests and responses need it
             spelled = spelled.replace(f"{package.partition('/')[0]}/{name}", base, 1)
         lines.append(f"{spelled} {field.name}")
     return "\n".join(lines)

@@ -64,7 +64,7 @@ class PortToken:
 
 
 def token_folder() -> Path:
-    """The folder of the files, below the user's state."""
+    """Return the folder of the files, below the user's state."""
     return state_folder() / "page-tokens"
 
 
@@ -99,7 +99,7 @@ def _read(path: Path) -> tuple[float, PortToken | None]:
 
 
 def _is_private(facts: os.stat_result) -> bool:
-    """Whether only this user can have read or written a file; Windows protects the user's folders itself."""
+    """Return whether only this user can have read or written a file; Windows protects the user's folders itself."""
     if not stat.S_ISREG(facts.st_mode):
         return False
     user = getattr(os, "getuid", None)
@@ -135,7 +135,7 @@ class Gate:
         self._names = {"localhost", host.lower(), machine, f"{machine}.local"}
 
     def refusal(self, headers: Mapping[str, str]) -> str | None:
-        """Return the reason why a request is refused, whatever it asks for (403); None if it may pass."""
+        """Return the reason to refuse a request, whatever it asks for (403); None if it is accepted."""
         host = headers.get("Host", "")
         if not self.knows(host):
             return f"this server does not answer to the name '{host[:200]}': open the address that linkwright printed"

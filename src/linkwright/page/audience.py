@@ -122,7 +122,7 @@ class Page:
         self.outbox.put(redundancy_key(message), encode(message, self.language))
 
     async def write(self) -> None:
-        """Send the opening messages, then those of the outbox, until the socket is gone."""
+        """Send the opening messages, then those of the outbox, until the socket closes."""
         try:
             for payload in self._opening:
                 made = self.outbox.make(payload)

@@ -82,7 +82,7 @@ class ServedFolder:
 
 @dataclass(frozen=True, slots=True)
 class Located:
-    """The outcome of locating a file of a description: an address for the page, or the reason for none."""
+    """The outcome of locating a file of a description: an address for the page, or the reason why there is none."""
 
     url: str | None
     problem: Phrase | None = None
@@ -164,7 +164,7 @@ def without_secrets(text: str) -> str:
 
 
 class MeshFolders:
-    """The folders that pages may read from now, by key; each display brings those of its description."""
+    """The folders that pages may read from, by key; each display adds those of its description."""
 
     def __init__(self) -> None:
         self._folders: dict[str, dict[str, ServedFolder]] = {}

@@ -22,7 +22,7 @@ Shrink = Callable[[int], DataContent]
 
 
 class ScaledData:
-    """A content of a display, packed for a page when its turn comes.
+    """The content of a display, which is packed for a page just before it is sent.
 
     Args:
         key: its key in outboxes.
@@ -61,7 +61,7 @@ class ScaledData:
 
 
 class InPieces:
-    """A frame in pieces, one each time its turn comes in an outbox, so that other payloads go between them.
+    """A frame that an outbox sends in pieces, with other payloads between them.
 
     Args:
         payload: the content.
@@ -100,7 +100,7 @@ Outgoing = str | bytes
 
 
 class Changes(Protocol):
-    """Content that is sent as changes: each page gets those it lacks, combined when its turn comes.
+    """Content that is sent as changes: each page gets the combined changes that it lacks.
 
     A slow page then gets many changes in one frame, and no content that is gone again.
     """
@@ -237,7 +237,7 @@ class Line:
 
     @property
     def room(self) -> int:
-        """Return the size in bytes that a reducible payload should have."""
+        """The size in bytes that a reducible payload should have."""
         return _FIRST_ROOM if self.rate is None else max(_LEAST_ROOM, int(self.rate * _SHARE))
 
     @property

@@ -52,7 +52,7 @@ class ArgumentsFeature(PageFeature):
         self._give: Give | None = None
 
     def opening(self) -> list[ServerMessage]:
-        """The form."""
+        """Return the form."""
         return [self._form]
 
     def ask(self, form: ArgumentForm, give: Give | None) -> None:

@@ -60,7 +60,7 @@ class JointsFeature(PageFeature):
             self.context.pages.publish(message)
 
     def opening(self) -> list[ServerMessage]:
-        """The sliders and their values."""
+        """Return the sliders and their values."""
         if self._panel is None:
             return [Joints(None)]
         return [self._controls(self._panel), JointPositions(self._panel.positions())]

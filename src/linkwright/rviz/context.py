@@ -21,7 +21,7 @@ from linkwright.rviz.frames.history import FrameHistory
 
 
 class PublishedTopics:
-    """The topics that the nodes of a graph publish, except one node: a viewer, whose publishers are its tools.
+    """The topics that the nodes of a graph publish, without those of the viewer's own node.
 
     Displays without messages check every second why there are none, and a configuration has hundreds of them.
 

@@ -219,7 +219,7 @@ def _maps(workflow: Workflow) -> tuple[str, ...]:
 
 
 def _reflects(workflow: Workflow) -> bool:
-    """Whether a material specifies how it reflects light, and not only an image."""
+    """Return whether a material specifies how it reflects light, and not only an image."""
     usual = Workflow()
     return any(_maps(workflow)) or (workflow.roughness, workflow.metalness) != (usual.roughness, usual.metalness)
 

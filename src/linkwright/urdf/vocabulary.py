@@ -13,7 +13,7 @@ _Path = tuple[str, ...]
 
 
 def meanings(name: str) -> list[Phrase]:
-    """The meanings of a name or path, each in Markdown; none if URDF has no such thing.
+    """Return the meanings of a name or path, each in Markdown; none if URDF has no such thing.
 
     A path goes from the outside in, may begin anywhere and may end with an attribute: ``joint.limit.effort``
     and ``limit.effort`` are the same, and so are ``limit/effort`` and ``<limit> effort``.
@@ -35,7 +35,7 @@ def meanings(name: str) -> list[Phrase]:
 
 
 def names() -> list[str]:
-    """The names of all elements and attributes, each once."""
+    """Return the names of all elements and attributes, each once."""
     found = [
         name
         for path, rule in _elements(ROBOT, ())
@@ -56,5 +56,5 @@ def _ends_with(path: _Path, asked: _Path) -> bool:
 
 
 def _headed(paths: list[_Path]) -> str:
-    """A heading with the paths from within ``<robot>``."""
+    """Return a heading with the paths from within ``<robot>``."""
     return "# " + ", ".join(f"`{'.'.join(path[1:] or path)}`" for path in paths)

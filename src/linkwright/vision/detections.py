@@ -31,10 +31,10 @@ class Detections:
         return len(self.scores)
 
     def name(self, index: int) -> str:
-        """The name of a detection's class."""
+        """Return the name of a detection's class."""
         return self.names[int(self.classes[index])]
 
     @classmethod
     def none(cls, names: tuple[str, ...]) -> Detections:
-        """Detections of an empty image."""
+        """Return the detections of an image without objects."""
         return cls(np.zeros((0, 4), np.float32), np.zeros(0, np.float32), np.zeros(0, np.int32), names)

@@ -35,7 +35,7 @@ class Detector(ABC):
     @property
     @abstractmethod
     def names(self) -> tuple[str, ...]:
-        """The names of its classes; empty if they are only known from images, as the texts of QR codes."""
+        """The names of its classes; empty if they are only known from images, such as the texts of QR codes."""
 
     @property
     def notes(self) -> tuple[Phrase, ...]:

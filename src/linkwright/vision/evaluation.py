@@ -33,7 +33,7 @@ class GroundTruth:
     ignored: NDArray[np.bool_]
 
     def where(self, chosen: NDArray[np.bool_]) -> GroundTruth:
-        """The objects that a mask selects."""
+        """Return the objects that a mask selects."""
         return GroundTruth(self.boxes[chosen], self.classes[chosen], self.ignored[chosen])
 
 
@@ -83,7 +83,7 @@ class Evaluation:
 
 
 def overlap(first: NDArray[np.float32], second: NDArray[np.float32]) -> NDArray[np.float64]:
-    """The intersection over union of each box with each.
+    """Return the intersection over union of each box of one set with each box of another.
 
     Args:
         first: shape ``(n, 4)``: left, top, right, bottom.
@@ -138,7 +138,7 @@ def evaluate(names: Sequence[str], truth: Sequence[GroundTruth], found: Sequence
 
 
 def balanced_score(names: Sequence[str], truth: Sequence[GroundTruth], found: Sequence[Detections]) -> float:
-    """The score threshold with the greatest F1 over all classes.
+    """Return the score threshold with the greatest F1 over all classes.
 
     The arguments are those of `evaluate`.
 
@@ -215,7 +215,7 @@ def _average_precisions(
 
 
 def _within(boxes: NDArray[np.float32], hidden: NDArray[np.float32]) -> NDArray[np.float64]:
-    """The part of each box within the ignored regions, the largest over all of them."""
+    """Return the part of each box within the ignored regions, the largest over all of them."""
     if not len(hidden):
         return np.zeros(len(boxes))
     inner = np.minimum(boxes[:, None, 2:], hidden[None, :, 2:]) - np.maximum(boxes[:, None, :2], hidden[None, :, :2])
@@ -225,7 +225,7 @@ def _within(boxes: NDArray[np.float32], hidden: NDArray[np.float32]) -> NDArray[
 
 
 def _area(recall: NDArray[np.float64], precision: NDArray[np.float64]) -> float:
-    """The mean of interpolated precisions at 101 recalls."""
+    """Return the mean of interpolated precisions at 101 recalls."""
     best: NDArray[np.float64] = np.maximum.accumulate(precision[::-1])[::-1]
     places = np.searchsorted(recall, _RECALLS, side="left")
     reached = places < len(best)

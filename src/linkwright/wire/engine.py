@@ -48,7 +48,7 @@ class Engine(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """End the engine once reliable messages are on their way, at the latest after a second."""
+        """Wait at most a second for reliable messages to be sent or acknowledged, then end the engine."""
 
     @abstractmethod
     def abandon(self) -> None:

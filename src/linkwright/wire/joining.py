@@ -68,7 +68,9 @@ def available(environment: Mapping[str, str] | None = None) -> bool:
 
 
 def check_security(environment: Mapping[str, str] | None = None) -> None:
-    """Refuse to join if only nodes with DDS security may; a process that does not join needs no security.
+    """Raise an error if only nodes with DDS security may join.
+
+    No error is raised if communication with other processes is switched off.
 
     Raises:
         LinkwrightError: DDS121, security is enforced.

@@ -1,4 +1,4 @@
-"""The types of fields as in rosidl_parser, for ``SLOT_TYPES``, which code written for rclpy reads."""
+"""Types of fields as in rosidl_parser, for the attribute ``SLOT_TYPES``, which code written for rclpy reads."""
 
 from __future__ import annotations
 

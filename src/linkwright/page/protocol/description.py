@@ -11,7 +11,7 @@ from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
 
 
 class ArgumentChoice(Record):
-    """Values that are used together somewhere; `label` has those that differ from the other choices."""
+    """Argument values that some caller uses together; `label` contains those that differ from the other choices."""
 
     label: str
     values: dict[str, str]
@@ -200,7 +200,7 @@ class AskDescriptionText(PageMessage):
 
 
 class AskInertia(PageMessage):
-    """Ask for implausible masses, which the page marks; takes the server a while."""
+    """Ask for implausible masses, which the page marks; the server needs a while for the answer."""
 
     display: str
 

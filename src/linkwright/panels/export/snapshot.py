@@ -303,7 +303,7 @@ def take_snapshot(
 
 
 def _problems(model: RobotModelDisplay) -> list[Diagnostic]:
-    """The findings on shapes of a robot that cannot be drawn."""
+    """Return the findings on shapes of a robot that cannot be drawn."""
     return [
         Diagnostic(
             "VIEW203",

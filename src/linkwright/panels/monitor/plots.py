@@ -115,7 +115,7 @@ class _Series:
     past: NDArray[np.float64] | None = None
 
     def has_samples(self) -> bool:
-        """Whether there are samples to send."""
+        """Return whether there are samples to send."""
         return self.past is not None or len(self.queue) > 0
 
     def take(self) -> NDArray[np.float64]:
@@ -204,7 +204,7 @@ class _Plots:
         self.sent: list[SeriesState] = []
 
     def has_samples(self) -> bool:
-        """Whether there are samples to send."""
+        """Return whether there are samples to send."""
         return any(series.has_samples() for series in self.series.values())
 
     def since(self, seen: int) -> tuple[bytes | None, int]:

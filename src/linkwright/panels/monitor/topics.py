@@ -121,7 +121,7 @@ class _Gauge:
         self.tap = TopicTap(context, topic, self._receive, raw=True, changed=feature.measure_soon)
 
     def message(self) -> TopicMessage | None:
-        """The last message; None before there is one, or if its bytes cannot be decoded."""
+        """Return the last message; None before there is one, or if its bytes cannot be decoded."""
         from linkwright.messages import deserialize
 
         if self.last is None or self.tap.message_class is None:

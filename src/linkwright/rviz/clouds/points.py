@@ -50,7 +50,7 @@ class Points:
 
 
 def points_of_cloud(message: Any) -> Points:
-    """Return the points of a PointCloud2 whose coordinates are finite, as RViz takes them.
+    """Return the finite points of a PointCloud2, as RViz selects them.
 
     Of several fields with one name the first counts; of a field with several values the first value. Fields of
     unknown types are ignored.

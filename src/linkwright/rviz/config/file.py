@@ -86,7 +86,7 @@ def write(path: Path, text: str, form: FileForm) -> None:
 
 
 def state_of(path: Path) -> FileState | None:
-    """Return the state of a file now, or None if there is none."""
+    """Return the current state of a file, or None if there is no file."""
     try:
         facts = path.stat()
     except OSError:

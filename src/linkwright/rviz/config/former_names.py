@@ -22,7 +22,7 @@ _RENAMED = {"Group": GROUP, "WrenchStamped": _PRESENT + "Wrench"}
 
 
 def is_former(cls: str) -> bool:
-    """Whether a class is named as in RViz 1."""
+    """Return whether a class is named as in RViz 1."""
     return cls.startswith(_FORMER)
 
 

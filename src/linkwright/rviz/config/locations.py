@@ -147,7 +147,7 @@ def recovery_folder() -> Path:
 
 
 def recovery_file(config: RvizConfig) -> Path:
-    """Return the recovery file of a configuration; one that was opened as such, and has no other file, keeps it."""
+    """Return the recovery file of a configuration."""
     folder = recovery_folder()
     if config.path is not None:
         path = _absolute(config.path)
@@ -183,7 +183,7 @@ def keep_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
 
 
 def find_unsaved(config: RvizConfig) -> list[Diagnostic]:
-    """Report edits of a file that an earlier run of the program kept (RVIZ302)."""
+    """Report edits of a file that an earlier run of the program stored (RVIZ302)."""
     path = recovery_file(config)
     if config.path is None or _absolute(config.path) == _absolute(path) or not path.is_file():
         return []
@@ -229,7 +229,7 @@ def _stored_finding(config: RvizConfig, path: Path) -> Diagnostic:
 
 
 def _is_saved(config: RvizConfig, text: str) -> bool:
-    """Whether the file has a text already: the user reverted all edits."""
+    """Return whether the file already has a text, because the user reverted all edits."""
     if config.path is None:
         return False
     try:
@@ -246,7 +246,7 @@ def _name_for(name: str) -> str:
 
 
 def _free(path: Path, taken: set[Path]) -> Path:
-    """Return the file, or a free one beside it for a page's own copy of the same configuration."""
+    """Return the file, or a free name next to it for a page's own copy of the same configuration."""
     number, found = 1, path
     while found in taken:
         number += 1

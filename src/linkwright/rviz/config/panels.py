@@ -231,7 +231,7 @@ def write_synchronization(document: Section, synchronization: Synchronization) -
 
 
 def _is_always_on(panel: Section) -> bool:
-    """Whether the panel is one of RViz 1 as of Noetic. Without a source its mode is none that could lead time."""
+    """Return whether the panel is one of RViz 1 up to Noetic, whose synchronization is always on."""
     return is_former(_text(panel, "Class")) and not _text(panel, "Experimental") and bool(_text(panel, "SyncSource"))
 
 

@@ -137,7 +137,7 @@ class DisplayConfig:
 
     @property
     def written_class(self) -> str:
-        """The name of its class as the file has it."""
+        """The name of its class as written in the file."""
         scalar = self.section.scalar("Class")
         return scalar.text if scalar else ""
 
@@ -370,12 +370,12 @@ class RvizConfig:
 
     @property
     def shows_whole_robot(self) -> bool:
-        """Whether the user has not chosen a view yet: pages then fit the camera to the robot."""
+        """Whether the user has not chosen a view yet, so that pages fit the camera to the robot."""
         return self._unchosen_view == self.views.current
 
     @property
     def awaits_size(self) -> bool:
-        """Whether `sizes_for` still has sizes to set: no page has measured the robot for grid and axes yet."""
+        """Whether `sizes_for` still has sizes to set, because no page has measured the robot yet."""
         return self._proposed is not None
 
     @property

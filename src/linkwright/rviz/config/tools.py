@@ -124,7 +124,7 @@ class ToolEntry:
 
 
 class ToolsConfig:
-    """``Tools`` of a file. If it lists none, RViz's default ones apply, which the file lists after the first change.
+    """The ``Tools`` of a file, or RViz's default tools if it lists none.
 
     Args:
         document: the file.
@@ -197,7 +197,7 @@ class ToolsConfig:
         return section
 
     def _remember(self, written: str, section: Section) -> ToolEntry:
-        """List a tool whose class has a name of RViz 2 or RViz 1."""
+        """List a tool under its class name of RViz 2 or RViz 1."""
         cls = modern_class(written)
         self._count += 1
         identity = f"tool-{self._count}"

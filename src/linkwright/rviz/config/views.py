@@ -45,7 +45,7 @@ class ModelSize:
 
     @property
     def distance(self) -> float:
-        """The distance from which all of it is visible, until a page has measured its meshes, m."""
+        """The distance in m from which all of the robot is visible, until a page has measured its meshes."""
         return _rounded(2.0 * self.diagonal)
 
     @property
@@ -211,7 +211,7 @@ Report = Callable[[Diagnostic], None]
 
 
 class ViewEntry:
-    """An entry of ``Views``; its unknown keys are kept.
+    """An entry of ``Views``; its unknown keys stay in the file.
 
     A view of a class that `VIEW_SCHEMAS` lacks is shown as an Orbit, or as the class that replaces it, and stays
     unchanged in the file until a value is set.

@@ -65,7 +65,7 @@ class Section:
         return id(self.node)
 
     def keys(self) -> list[str]:
-        """The keys, in the order of the file."""
+        """Return the keys, in the order of the file."""
         return [key.value for key, _ in self.node.value if isinstance(key, yaml.ScalarNode)]
 
     def scalar(self, *path: str) -> Scalar | None:
@@ -227,7 +227,7 @@ def entries(parent: Section, key: str) -> list[yaml.Node] | None:
 
 @dataclass(frozen=True, slots=True)
 class SequenceMemory:
-    """The value of the key of a sequence, and the items if it was one; neither is copied."""
+    """The value of the key of a sequence, with its items if it was a sequence; neither is copied."""
 
     node: yaml.Node | None
     items: list[yaml.Node] | None
@@ -266,7 +266,7 @@ class NewSection:
 
 
 def make_section(section: Section, *path: str) -> tuple[Section, list[NewSection]]:
-    """Return the mapping at a path, created if it is missing, and all mappings created on the way, with itself."""
+    """Return the mapping at a path, created if it is missing, and all mappings created for it."""
     new_sections = []
     for key in path:
         there = section.section(key)

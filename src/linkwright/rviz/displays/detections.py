@@ -74,7 +74,7 @@ class BoundingBox3DArrayDisplay(_BoxDisplay):
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, _COLOUR)
 
     def content(self, message: Any) -> DataContent | None:
-        """The boxes."""
+        """Return the boxes."""
         boxes = self.boxes_of(message)
         return self._content(boxes, [(255, 255, 255)] * len(boxes), [-1.0] * len(boxes), [""] * len(boxes))
 
@@ -84,7 +84,7 @@ class BoundingBox3DArrayDisplay(_BoxDisplay):
 
 
 class BoundingBox3DDisplay(BoundingBox3DArrayDisplay):
-    """A box, in the Fixed Frame: its message has no header."""
+    """A box in the Fixed Frame, because its message has no header."""
 
     CLASS = "vision_msgs_rviz_plugins/BoundingBox3D"
     MESSAGE = "vision_msgs/msg/BoundingBox3D"
@@ -151,7 +151,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
         super().reset()
 
     def content(self, message: Any) -> DataContent | None:
-        """The boxes."""
+        """Return the boxes."""
         detections = self.detections_of(message)
         results = [best_result(detection) for detection in detections]
         colors = [class_color(name, self._table) for name, _ in results]

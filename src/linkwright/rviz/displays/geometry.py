@@ -54,7 +54,7 @@ class GridCellsDisplay(TopicDisplay):
 
 
 class PointStampedDisplay(RecentDisplay):
-    """The last points of a topic, as spheres that stay where they were in the Fixed Frame."""
+    """The last points of a topic, as spheres that keep their place in the Fixed Frame."""
 
     CLASS = "rviz_default_plugins/PointStamped"
     MESSAGE = "geometry_msgs/msg/PointStamped"
@@ -68,7 +68,7 @@ class PointStampedDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """The point."""
+        """Return the point."""
         point = np.array([[message.point.x, message.point.y, message.point.z]], dtype=np.float32)
         return PointMarks(point) if self.is_finite(point[0]) else None
 
@@ -85,7 +85,7 @@ class PolygonDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """The corners."""
+        """Return the corners."""
         corners = [(point.x, point.y, point.z) for point in message.polygon.points]
         points = np.array(corners, dtype=np.float32).reshape(-1, 3)
         return PolygonLine(points) if self.is_finite(points) else None

@@ -88,7 +88,7 @@ class GridMapDisplay(RecentDisplay):
         )
 
     def content(self, message: Any) -> DataContent | None:
-        """The surface."""
+        """Return the surface."""
         try:
             made = self._surface(message)
         except BadGridError as error:

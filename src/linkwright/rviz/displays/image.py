@@ -338,7 +338,7 @@ class CameraDisplay(ImageTopicDisplay):
         return tuple(found.values())
 
     def most_waiting(self) -> int:
-        """Return RViz's number, for which the display has no property."""
+        """Return RViz's number of waiting messages, for which the display has no property."""
         return _MOST_WAITING
 
     def process_image(self, message: Any, pose: Pose | None) -> None:

@@ -152,7 +152,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         self.set_status_row(_CLIENT, level, text)
 
     def _soon(self, handle: Callable[[], None]) -> None:
-        """Handle an update of the server, or hold it back while time is paused."""
+        """Handle an update of the server, or delay it while time is paused."""
         if self.host.time.paused:
             self._held.append(handle)
         else:

@@ -82,7 +82,7 @@ class CloudDisplay(TopicDisplay):
         return 0.0
 
     def choose_transformer(self, transformer: str) -> None:
-        """Choose a transformer that the messages support; the one in the file stays there."""
+        """Choose a transformer that the messages support, without changing the one in the file."""
         if self.properties.set_read_only((COLOUR_TRANSFORMER,), transformer):
             self.publish_properties()
 
@@ -142,7 +142,7 @@ class CloudDisplay(TopicDisplay):
         super().stop()
 
     def fields_of(self, key: str, index: int) -> dict[str, float | str] | None:
-        """Return the values of a point that is shown, besides its coordinates; None if it is not shown any more."""
+        """Return the values of a visible point in addition to its coordinates; None if it is no longer visible."""
         shown = next((shown for shown in self._shown if shown.key == key), None)
         if shown is None or not 0 <= index < len(shown.points):
             return None
@@ -258,7 +258,7 @@ class PointsDisplay(CloudDisplay):
         """
 
     def lack_of_points(self, message: Any) -> Phrase | None:
-        """Return the reason why a message has no points, if that is unusual."""
+        """Return the reason why a message has no points, if that is unexpected."""
         return None
 
     def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
@@ -348,7 +348,7 @@ class PointCloudDisplay(PointsDisplay):
     )
 
     def points_of(self, message: Any) -> Points:
-        """The points with finite coordinates."""
+        """Return the points with finite coordinates."""
         return points_of_legacy_cloud(message)
 
 
@@ -364,7 +364,7 @@ class PointCloud2Display(PointsDisplay):
     )
 
     def points_of(self, message: Any) -> Points:
-        """The points with finite coordinates."""
+        """Return the points with finite coordinates."""
         return points_of_cloud(message)
 
     def lack_of_points(self, message: Any) -> Phrase | None:
@@ -380,7 +380,7 @@ class ScalarDisplay(PointsDisplay):
     """The field of the message with the number, and the channel of the point."""
 
     def points_of(self, message: Any) -> Points:
-        """The one point."""
+        """Return the one point."""
         value = np.array([getattr(message, self.FIELD)], np.float64)
         return Points(np.zeros((1, 3), np.float32), {self.FIELD: value})
 

@@ -125,7 +125,7 @@ class PoseDisplay(RecentDisplay):
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *pose_shape())
 
     def content(self, message: Any) -> DataContent | None:
-        """The pose."""
+        """Return the pose."""
         row = pose_row(message.pose)
         return PoseMarks(np.array([row], dtype=np.float32), NO_COVARIANCE) if self.is_finite(row) else None
 
@@ -138,7 +138,7 @@ class PoseWithCovarianceDisplay(RecentDisplay):
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *pose_shape(), covariance())
 
     def content(self, message: Any) -> DataContent | None:
-        """The pose with its covariance."""
+        """Return the pose with its covariance."""
         row = pose_row(message.pose.pose)
         spread = np.asarray(message.pose.covariance, dtype=np.float64)
         if not self.is_finite(row, spread):
@@ -177,7 +177,7 @@ class PoseArrayDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """The poses."""
+        """Return the poses."""
         rows = pose_rows(message.poses)
         return PoseMarks(rows, NO_COVARIANCE) if self.is_finite(rows) else None
 
@@ -198,7 +198,7 @@ class ParticleCloudDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """The poses and their weights."""
+        """Return the poses and their weights."""
         rows = pose_rows(particle.pose for particle in message.particles)
         weights = np.array([particle.weight for particle in message.particles], dtype=np.float32)
         return ParticleMarks(rows, weights) if self.is_finite(rows, weights) else None
@@ -297,6 +297,6 @@ class PathDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """The poses of a path."""
+        """Return the poses of a path."""
         rows = pose_rows(stamped.pose for stamped in message.poses)
         return PoseMarks(rows, NO_COVARIANCE) if self.is_finite(rows) else None

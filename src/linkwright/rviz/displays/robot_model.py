@@ -85,7 +85,7 @@ class RobotRows:
         return [(LINKS, name) for name in self._links_of(self._robot.joints[joint], style)]
 
     def derived(self, style: str, is_on: Callable[[Path], bool]) -> dict[Path, bool]:
-        """Return the check boxes that follow from those of links: a joint's is on when those of all its links are."""
+        """Return the check boxes that follow from those of links: a joint's is on if those of all its links are."""
         on = {name: is_on((LINKS, name)) for name in self._shaped - _OPTION_NAMES}
         found: dict[Path, bool] = {
             (JOINTS, joint.name): all(on.get(name, True) for name in links)
@@ -234,7 +234,7 @@ class RobotModelDisplay(ViewerDisplay):
             self._described(self._held)
 
     def messages(self) -> list[ServerMessage]:
-        """The robot."""
+        """Return the robot."""
         return [self.scene]
 
     def receive(self, status: MeshStatus) -> None:

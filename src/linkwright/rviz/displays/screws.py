@@ -30,7 +30,7 @@ class ScrewDisplay(RecentDisplay):
     LENGTH = ("History Length",)
 
     def content(self, message: Any) -> DataContent | None:
-        """The two vectors."""
+        """Return the two vectors."""
         linear, angular = (self.number_list(vector) for vector in self.vectors(message))
         return Screw(linear, angular) if self.is_finite(linear, angular) else None
 
@@ -55,7 +55,7 @@ class TwistDisplay(ScrewDisplay):
     )
 
     def vectors(self, message: Any) -> tuple[Any, Any]:
-        """The velocities."""
+        """Return the velocities."""
         return message.twist.linear, message.twist.angular
 
 
@@ -67,7 +67,7 @@ class AccelDisplay(ScrewDisplay):
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *TwistDisplay.SCHEMA[1:])
 
     def vectors(self, message: Any) -> tuple[Any, Any]:
-        """The accelerations."""
+        """Return the accelerations."""
         return message.accel.linear, message.accel.angular
 
 
@@ -83,7 +83,7 @@ class WrenchDisplay(ScrewDisplay):
     )
 
     def vectors(self, message: Any) -> tuple[Any, Any]:
-        """The force and the torque."""
+        """Return the force and the torque."""
         return message.wrench.force, message.wrench.torque
 
     def number_list(self, vector: Any) -> list[float]:

@@ -171,7 +171,7 @@ class WorldDisplay(TopicDisplay):
         self._show_poses()
 
     def transforms_received(self) -> None:
-        """Place the world once the frames of its robots are known; from then on its poses lead."""
+        """Place the world once the frames of its robots are known; afterwards its own poses apply."""
         own = self.context.transforms.own(WORLD)
         placed = self._placed[1] is not None if not self._leads else own is not None and own.parent is not None
         if self._content.links and not placed and (self._leads or self._placed[0] != WORLD):

@@ -97,16 +97,16 @@ class FrameHistory:
         return np.array(found)
 
     def names(self) -> frozenset[str]:
-        """The frames that transforms have named."""
+        """Return the frames that transforms have named."""
         return frozenset(self._buffer.frame_names())
 
     def own(self, name: str) -> OwnFrame | None:
-        """Return a frame of displays, or None if no display places one of that name, or tf knows it."""
+        """Return a frame placed by a display; None if no display places it, or tf knows it."""
         found = next((own for own in self._own.values() if own.name == name), None)
         return None if found is None or name in self._buffer.frame_names() else found
 
     def known(self, frame: str, pose: ArrayLike) -> tuple[str, NDArray[np.float64]]:
-        """Return a pose in a frame of tf, if the given one is in a frame of a display, so that other programs know it.
+        """Convert a pose in a frame of a display to a frame of tf, so that other programs know its frame.
 
         Args:
             frame: the frame that the pose is in.

@@ -132,7 +132,7 @@ class TimeControl:
         self._changed()
 
     def took(self, display: str, stamp_ns: int) -> None:
-        """Note the time of a message that a display takes, nanoseconds."""
+        """Note the time, in nanoseconds, of a message that a display shows."""
         if display not in self.sources:
             self.sources.append(display)
             self._changed()

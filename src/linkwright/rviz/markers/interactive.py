@@ -60,7 +60,7 @@ class ClientEvents:
 
 
 class InteractiveMarkerClient:
-    """Connects to one server, waiting until it appears, and again when it comes back.
+    """Connects to one server: it waits until the server appears, and reconnects when it returns.
 
     Args:
         node: to subscribe with.

@@ -41,7 +41,7 @@ class Edit(Generic[State]):
         self._other = before
 
     def turn(self) -> None:
-        """Undo the edit, or redo it after that."""
+        """Undo the edit, or redo it after an undo."""
         self._other = self._swap(self._other)
 
 
@@ -83,7 +83,7 @@ class History:
         return follows and bool(self._done) and self._done[-1].subject == subject
 
     def prolong(self) -> None:
-        """Merge a change with the last edit, which has the state before."""
+        """Merge a change with the last edit, which keeps the older state."""
         self._last = self._clock()
 
     def add(self, edit: Edit[Any]) -> None:

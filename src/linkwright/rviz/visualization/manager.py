@@ -114,7 +114,7 @@ class VisualizationManager:
         self.tree.stop()
 
     def open(self, config: RvizConfig) -> None:
-        """Show another configuration; the edits of the one before are forgotten."""
+        """Open another configuration, and forget the edits of the previous one."""
         self.tree.stop()
         self.config = config
         self.view, self.shows_whole_robot = config.views.current, config.shows_whole_robot
@@ -254,7 +254,7 @@ class VisualizationManager:
                 self._option_changed(path[0])
 
     def measured(self, diagonal: float, ground: float) -> None:
-        """Fit grid and axes to the size and ground, m, of a robot that a page has drawn, unless the user set them."""
+        """Fit grid and axes, unless the user set them, to the size and ground, in m, of a drawn robot."""
         for config, path, value in self.config.sizes_for(diagonal, ground):
             for display in self.displays:
                 if display.config is config:
@@ -412,7 +412,7 @@ class Managers:
                 self._drop(next(iter(self._ends)))
 
     def close(self) -> None:
-        """End all of them."""
+        """Close all managers."""
         for key in list(self._own):
             self._drop(key)
         self.shared.close()

@@ -45,7 +45,7 @@ class Shot:
 
 
 class _Ground:
-    """The occupied places of the ground, seen from above."""
+    """The occupied places on the ground, as circles seen from above."""
 
     def __init__(self, stage: Stage, geoms: list[int]) -> None:
         data = stage.simulation.data
@@ -62,7 +62,7 @@ class _Ground:
         self._discs: list[tuple[float, float, float]] = []
 
     def is_free(self, x: float, y: float, radius: float) -> bool:
-        """Whether a circle is free."""
+        """Return whether a circle is free."""
         if any((x - a) ** 2 + (y - b) ** 2 < (radius + other) ** 2 for a, b, other in self._discs):
             return False
         if not len(self._half):
@@ -78,7 +78,7 @@ class _Ground:
         return not (beyond < 0.0).all(axis=2).any()
 
     def occupy(self, x: float, y: float, radius: float) -> None:
-        """Occupy a circle."""
+        """Mark a circle as occupied."""
         self._discs.append((x, y, radius))
 
 
@@ -129,7 +129,7 @@ def arrange(stage: Stage, options: Options, generator: np.random.Generator) -> S
 
 
 def _choose_structures(stage: Stage, generator: np.random.Generator) -> list[int]:
-    """Hide some of the structures; returns the others."""
+    """Hide some of the structures, and return the others."""
     left = []
     for geoms in stage.structures.values():
         if generator.random() < 0.25:
@@ -209,7 +209,7 @@ def _free_place(
 
 
 def _stand(stage: Stage, prop: Prop, place: tuple[float, float], generator: np.random.Generator) -> None:
-    """Place an object: upright most often, sometimes lying or above the ground."""
+    """Place an object: upright in most cases, sometimes lying or above the ground."""
     turn = _yawed(generator.uniform(-pi, pi))
     if prop.is_round or generator.random() < 0.08:
         turn = _any_turn(generator)

@@ -63,7 +63,7 @@ class ClassRules:
     patterns: Mapping[str, tuple[str, ...]]
 
     def class_of(self, *names: str) -> int | None:
-        """The class of the first rule that matches one of some names; None for none."""
+        """Return the class of the first rule that matches one of some names; None for none."""
         for number, patterns in enumerate(self.patterns.values()):
             if any(fnmatchcase(name, pattern) for name in names for pattern in patterns):
                 return number
@@ -97,14 +97,14 @@ def _wrong(document: YamlDocument, node: yaml.Node | None) -> LinkwrightError:
 
 
 def usual_class(name: str) -> str:
-    """The class by a model's name, without a number at its end and without a colour; ``red_ball_2``: ball."""
+    """Return the class of a model by its name without a colour and a final number: ``red_ball_2`` gives ``ball``."""
     words = [word for word in re.split(r"[ _-]+", _NUMBER.sub("", name.lower())) if word]
     plain = [word for word in words if word not in _COLOURS]
     return "_".join(plain or words) or name
 
 
 def usual_rules(simulations: list[Simulation]) -> ClassRules:
-    """The default classes of worlds, sorted by name: all models but surroundings.
+    """Return the default classes of worlds, sorted by name: all models but surroundings.
 
     An included model is named by its file.
     """
@@ -117,7 +117,7 @@ def usual_rules(simulations: list[Simulation]) -> ClassRules:
 
 
 def objects_of(simulation: Simulation, rules: ClassRules) -> list[SceneObject]:
-    """The objects of a world.
+    """Return the objects of a world.
 
     A model is one object. If the rules name visuals of a model, the named visuals that touch each other are one object.
     """
@@ -148,7 +148,7 @@ def own_name(model: Model) -> str:
 
 
 def geom_boxes(model: Any, data: Any) -> Array:
-    """Axis-aligned bounding boxes of all geoms in the world: lower and upper corners in m, shape (geoms, 2, 3)."""
+    """Return the axis-aligned bounding boxes of all geoms in the world: corners in m, shape (geoms, 2, 3)."""
     turned = data.geom_xmat.reshape(-1, 3, 3)
     middle = data.geom_xpos + np.einsum("gij,gj->gi", turned, model.geom_aabb[:, :3])
     half = np.einsum("gij,gj->gi", np.abs(turned), model.geom_aabb[:, 3:])
@@ -157,7 +157,7 @@ def geom_boxes(model: Any, data: Any) -> Array:
 
 
 def _visuals(simulation: Simulation) -> dict[str, dict[str, list[str]]]:
-    """The visuals of each model by name, and the geoms of each visual."""
+    """Return the visuals of each model by name, and the geoms of each visual."""
     found: dict[str, dict[str, list[str]]] = {}
     for geom in range(simulation.model.ngeom):
         if simulation.model.geom_group[geom] == VISUAL_GROUP:
@@ -182,7 +182,7 @@ def _is_background(simulation: Simulation, name: str, model: Model) -> bool:
 
 
 def _touching(parts: list[str], geoms: Mapping[str, list[str]], model: Any, boxes: Array) -> Iterator[list[str]]:
-    """Groups of visuals whose bounding boxes touch each other."""
+    """Return groups of visuals whose bounding boxes touch each other."""
     left = list(parts)
     around = {part: boxes[[model.geom(geom).id for geom in geoms[part]]] for part in parts}
     around = {part: np.stack([each[:, 0].min(axis=0), each[:, 1].max(axis=0)]) for part, each in around.items()}

@@ -59,12 +59,12 @@ class DatasetFolder:
         return sum(map(len, self._images.values()))
 
     def statistics(self) -> dict[str, ClassStatistics]:
-        """The statistics of the images, by class."""
+        """Return the statistics of the images, by class."""
         annotations = [annotation for split in SPLITS for annotation in self._annotations[split]]
         return statistics_of(self._classes, self._size, annotations)
 
     def open(self, *, force: bool = False, append: bool = False) -> None:
-        """Make the folder, or continue an existing one.
+        """Create the folder, or continue an existing one.
 
         Args:
             force: remove the dataset that is in it.
@@ -275,7 +275,7 @@ def _occupied(path: Path, *, is_dataset: bool) -> LinkwrightError:
 
 
 def cannot_write(path: Path, error: OSError) -> LinkwrightError:
-    """The error VISION207: a file of a dataset cannot be written."""
+    """Return the error VISION207: a file of a dataset cannot be written."""
     reason = foreign(error.strerror or error)
     message = phrase("the dataset '{folder}' cannot be written: {reason}", folder=display_path(path), reason=reason)
     return LinkwrightError(Diagnostic("VISION207", message))

@@ -48,7 +48,7 @@ class Label:
 
 
 def label_image(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, least_visible: float) -> list[Label]:
-    """Make the labels of an image.
+    """Return the labels of an image.
 
     Args:
         stage: the world, as it is in the image.
@@ -82,7 +82,7 @@ def label_image(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, least_
 
 
 def box_of(mask: Any) -> Box | None:
-    """The bounding box of a mask of shape (height, width); None for an empty one."""
+    """Return the bounding box of a mask of shape (height, width); None for an empty one."""
     rows = np.flatnonzero(mask.any(axis=1))
     if not len(rows):
         return None
@@ -92,7 +92,7 @@ def box_of(mask: Any) -> Box | None:
 
 
 def _side_of(mask: Any) -> int:
-    """The shorter side of a mask's bounding box."""
+    """Return the shorter side of a mask's bounding box."""
     box = box_of(mask)
     return min(box[2] - box[0], box[3] - box[1]) if box else 0
 

@@ -109,12 +109,12 @@ def _blurred(colour: Pixels, radius: float) -> Pixels:
 
 
 def _tinted(generator: np.random.Generator, most: float) -> Array:
-    """White with a random tint: red, green and blue, the greatest of them 1."""
+    """Return white with a random tint: red, green and blue, whose maximum is 1."""
     return np.array(colorsys.hsv_to_rgb(generator.random(), generator.uniform(0.0, most), 1.0))
 
 
 def _recoloured(own: tuple[float, ...], way: float, generator: np.random.Generator) -> Array:
-    """A colour for an object: its own, one of the same hue, or any."""
+    """Return a colour for an object: its own, one of the same hue, or any."""
     hue, saturation, value = colorsys.rgb_to_hsv(*own)
     if way < 0.45:
         return np.array(own)

@@ -110,7 +110,7 @@ class Studio:
         self._camera = Camera()
 
     def make(self, index: int) -> LabelledImage:
-        """Make an image."""
+        """Return an image with its labels, by its number."""
         options, which = self._options, index % len(self._stages)
         stage, chapter = self._stages[which], index // CHAPTER
         if self._chapters.get(which) != chapter:
@@ -190,7 +190,7 @@ def _share(simulations: Sequence[Simulation], rules: ClassRules) -> None:
 
 
 def _is_labelled(name: str, model: Model, rules: ClassRules) -> bool:
-    """Whether a model, or each visual of it, has a class."""
+    """Return whether a model, or each visual of it, has a class."""
     if rules.class_of(name, own_name(model)) is not None:
         return True
     parts = [f"{name}::{link.name}::{visual.name}" for link in model.links for visual in link.visuals]

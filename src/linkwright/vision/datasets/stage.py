@@ -119,7 +119,7 @@ class Stage:
         self.renderer: Renderer = make_renderer(simulation)
 
     def begin(self) -> None:
-        """Reset: structures at their places with their colours, and all objects hidden."""
+        """Reset the world: structures at their places in their colours, and all objects hidden."""
         model, data = self.simulation.model, self.simulation.data
         data.geom_xpos[:], data.geom_xmat[:] = self._places
         model.geom_rgba[:], model.geom_matid[:] = self._colours, self._materials
@@ -144,7 +144,7 @@ class Stage:
         data.geom_xmat[prop.geoms] = (turn @ prop.turns).reshape(-1, 9)
 
     def shape_distractor(self, geom: int, generator: np.random.Generator) -> float:
-        """Give a distractor a random size, far from that of a ball, a cube or a drum; returns its radius in m."""
+        """Give a distractor a random size, unlike a ball, a cube or a drum, and return its radius in m."""
         model, kinds = self.simulation.model, self._mujoco.mjtGeom
         thin, middle, long = np.sort(generator.uniform(0.03, 0.12, 3)) * [0.5, 1.0, 1.0]
         long = max(long * generator.uniform(2.0, 6.0), 3.0 * middle)
@@ -171,11 +171,11 @@ class Stage:
         data.geom_xmat[geom] = turn.reshape(9)
 
     def colour_of(self, geom: int) -> Any:
-        """The colour of a geom in the world: red, green, blue and opacity."""
+        """Return the colour of a geom in the world: red, green, blue and opacity."""
         return self._colours[geom]
 
     def has_image(self, geom: int) -> bool:
-        """Whether a geom has a texture of its own."""
+        """Return whether a geom has a texture of its own."""
         return bool(self._materials[geom] >= 0)
 
     def paint(self, geom: int, colour: Array, kind: str = "", number: int = 0) -> None:
@@ -239,7 +239,7 @@ class Stage:
         return np.stack([middle - half, middle + half])
 
     def _copy(self, objects: Sequence[SceneObject], copies: int) -> list[tuple[SceneObject, str]]:
-        """Add copies of objects as static bodies; each with the name of its original."""
+        """Add copies of objects as static bodies, each with the name of its original."""
         model, spec = self.simulation.model, self.simulation.scene.spec
         counts: dict[int, int] = {}
         for scene_object in objects:

@@ -11,7 +11,7 @@ Pixels = np.ndarray[Any, np.dtype[np.uint8]]
 
 
 def pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
-    """A random square pattern.
+    """Return a random square pattern.
 
     Args:
         generator: the random generator.
@@ -44,7 +44,7 @@ def pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
 
 
 def smooth(generator: np.random.Generator, cells: int, height: int, width: int) -> Any:
-    """Random values between 0 and 1 on a coarse grid, interpolated between: shape (height, width)."""
+    """Return random values between 0 and 1, interpolated from a coarse grid, shape (height, width)."""
     grid = generator.random((cells + 1, cells + 1))
     down, across = np.linspace(0, cells, height, endpoint=False), np.linspace(0, cells, width, endpoint=False)
     rows = _between(grid, down)

@@ -113,7 +113,7 @@ class _Worker:
 
 
 def _serve(source: Source, connection: Connection) -> None:
-    """The main function of a process."""
+    """Run a worker process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     sys.stdout = sys.stderr
@@ -129,7 +129,7 @@ def _serve(source: Source, connection: Connection) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process with its parent, however that ends."""
+    """End this process when its parent ends, for any reason."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()

@@ -83,7 +83,7 @@ class ColourDetector(Detector):
 
 
 def mask_of(hsv: NDArray[np.uint8], bounds: tuple[int, ...]) -> NDArray[np.uint8]:
-    """A mask of a colour: 255 where an image has it, else 0. Spots smaller than three pixels are left out.
+    """Return a mask of a colour: 255 where an image has it, else 0. Spots smaller than three pixels are left out.
 
     Args:
         hsv: shape ``(height, width, 3)``.

@@ -12,7 +12,7 @@ _GPU = re.compile(r"(?:cuda(?::(\d+))?|(\d+))$")
 
 
 def gpu_of(device: str) -> str | None:
-    """The number of a device's GPU; None for the CPU.
+    """Return the number of a device's GPU; None for the CPU.
 
     Args:
         device: ``cpu``, ``cuda``, ``cuda:0``, ``0``.

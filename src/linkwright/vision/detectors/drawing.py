@@ -19,7 +19,7 @@ _LEAST_TEXT = 9
 
 
 def colour_of(name: str) -> tuple[int, int, int]:
-    """Red, green and blue of a class: the colour in its name, else one that is always the same for a name."""
+    """Return the red, green and blue of a class: the colour in its name, or a constant one for each name."""
     paint = paint_of(name)
     if paint is not None:
         return paint
@@ -32,7 +32,7 @@ def colour_of(name: str) -> tuple[int, int, int]:
 
 
 def drawn(image: NDArray[np.uint8], found: Detections) -> NDArray[np.uint8]:
-    """The image with a box, a name and a score for each detection.
+    """Return a copy of the image with a box, a name and a score for each detection.
 
     Args:
         image: shape ``(height, width, 3)``, red, green, blue; it is not changed.

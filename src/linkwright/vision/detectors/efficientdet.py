@@ -64,7 +64,7 @@ class EfficientDetDetector(Detector):
         return self._names
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
-        """Detect objects in an image, which is stretched to the size of the input, as TFLite's own library does it."""
+        """Detect objects in an image, which is stretched to the size of the input, as in TFLite's own library."""
         if not image.size:
             return Detections.none(self._names)
         cv2 = load_opencv()
@@ -86,7 +86,7 @@ class EfficientDetDetector(Detector):
 
 
 def _final_outputs(file: Path, interpreter: Any) -> list[int]:
-    """The tensors of boxes, classes, scores and their number; files differ in order and names of outputs."""
+    """Return the tensors of boxes, classes, scores and their number; files differ in order and names of outputs."""
     last = [
         get_ops_detail for get_ops_detail in interpreter._get_ops_details() if get_ops_detail["op_name"] == _LAST_STEP
     ]

@@ -70,7 +70,7 @@ class Layout:
     left_out: str = ""
 
     def candidates(self, output: NDArray[np.float32], threshold: float) -> Candidates:
-        """The boxes with at least some score; unless the layout is final, several are of one object.
+        """Return the boxes with at least some score; unless the layout is final, several are of one object.
 
         Args:
             output: shape ``(1, a, b)``.
@@ -145,7 +145,7 @@ def find_layout(
 
 
 def wrong_number(file: Path, classes: int, named: int, labels: Path | None) -> LinkwrightError:
-    """The error for a number of names other than that of a network's classes: VISION107.
+    """Return the error for a number of names other than that of a network's classes: VISION107.
 
     Args:
         file: of the network.
@@ -172,7 +172,7 @@ def wrong_number(file: Path, classes: int, named: int, labels: Path | None) -> L
 
 
 def _more_numbers(shapes: Sequence[Sequence[int]], metadata: Metadata) -> tuple[int, str]:
-    """The number of values behind a box's scores, and their task."""
+    """Return the number of values behind a box's scores, and their task."""
     if metadata.task == "pose":
         return metadata.key_numbers, "pose"
     masks = next((shape[1] for shape in shapes[1:] if len(shape) == 4), 0)
@@ -182,7 +182,7 @@ def _more_numbers(shapes: Sequence[Sequence[int]], metadata: Metadata) -> tuple[
 
 
 def _possible(shape: Sequence[int], size: tuple[int, int], more: int, *, suppressed: bool) -> list[tuple[Form, int]]:
-    """The possible forms of an output of a shape, the likeliest first, with their numbers of classes."""
+    """Return the possible forms of an output of a shape, the likeliest first, with their numbers of classes."""
     batch, first, second = shape
     if batch != 1:
         return []

@@ -75,7 +75,7 @@ def letterboxed(
 
 
 def tensor_of(pixels: NDArray[np.uint8], kind: type[np.floating]) -> NDArray[np.floating]:
-    """Pixels, shape ``(rows, columns, 3)``, as floats from 0 to 1, shape ``(1, 3, rows, columns)``."""
+    """Return pixels, shape ``(rows, columns, 3)``, as floats from 0 to 1, shape ``(1, 3, rows, columns)``."""
     cv2 = load_opencv()
     planes = np.empty((1, 3, *pixels.shape[:2]), np.float32)
     for plane, levels in zip(planes[0], cv2.split(pixels), strict=True):

@@ -113,7 +113,7 @@ class QrDetector(Detector):
         return most_certain([_box(place) for place in places], [1.0] * len(read), classes, names, limits, places)
 
     def _read(self, grey: NDArray[np.uint8], corners: NDArray[np.float32]) -> str:
-        """The text of a code with these corners, rectified and enlarged; empty if it cannot be read."""
+        """Return the text of a code with these corners, rectified and enlarged; empty if it cannot be read."""
         cv2 = load_opencv()
         near, far = _QUIET_ZONE, _QUIET_ZONE + _ENLARGED
         square = np.array([(near, near), (far, near), (far, far), (near, far)], np.float32)
@@ -135,5 +135,5 @@ def _grey(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 
 def _box(corners: NDArray[np.floating[Any]]) -> list[float]:
-    """The bounding box of four points: left, top, right, bottom."""
+    """Return the bounding box of four points: left, top, right, bottom."""
     return [*map(float, corners.min(axis=0)), *map(float, corners.max(axis=0))]

@@ -144,7 +144,7 @@ class NetworkDetector(Detector):
 
 
 def _image_input(file: Path, inputs: Sequence[Any]) -> tuple[str, type[np.floating], tuple[int, int] | None]:
-    """Name and element type of the input, and its height and width if they are fixed."""
+    """Return the name and element type of the input, and its height and width if they are fixed."""
     shape = list(inputs[0].shape) if len(inputs) == 1 else []
     kind = _NUMBERS.get(inputs[0].type) if len(inputs) == 1 else None
     if len(shape) == 4 and isinstance(shape[0], int) and shape[0] > 1:

@@ -25,7 +25,7 @@ _OTHER_FORMS = (".pt", ".pth", ".weights", ".engine", ".torchscript", ".pb", ".h
 
 
 def detector_names() -> tuple[str, ...]:
-    """The names of the installed detectors."""
+    """Return the names of the installed detectors."""
     return tuple(extensions(_GROUP))
 
 

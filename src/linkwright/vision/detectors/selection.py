@@ -18,7 +18,7 @@ def most_certain(
     limits: Limits,
     corners: Sequence[object] | None = None,
 ) -> Detections:
-    """The detections that count, the most certain first.
+    """Return the detections that count, the most certain first.
 
     Args:
         boxes: left, top, right, bottom of each.

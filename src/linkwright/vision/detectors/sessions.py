@@ -11,7 +11,7 @@ from linkwright.vision.detectors.devices import gpu_of
 
 
 def session_on(file: Path, device: str) -> tuple[Any, list[Phrase]]:
-    """Make an ``onnxruntime.InferenceSession``; returns it and remarks for its user.
+    """Return an ``onnxruntime.InferenceSession``, and remarks for its user.
 
     Args:
         file: the ONNX file.

@@ -8,7 +8,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_
 
 
 def bad_setting(name: str, value: object, hint: Phrase | None = None) -> LinkwrightError:
-    """The error for an invalid setting: VISION109."""
+    """Return the error for an invalid setting: VISION109."""
     message = phrase("the setting '{name}' of the detector cannot be '{value}'", name=name, value=value)
     return LinkwrightError(Diagnostic("VISION109", message, hint=hint))
 
@@ -39,7 +39,7 @@ def choice(settings: Mapping[str, object], name: str, default: str, known: Seque
 
 
 def hsv_range(name: str, value: object) -> tuple[int, ...]:
-    """Parse a range of colours: least hue, saturation, value, then the greatest, in OpenCV's units (hue to 179).
+    """Parse a range of colours: minimum hue, saturation and value, then the maximum, in OpenCV's units.
 
     Raises:
         LinkwrightError: VISION109, it is not a list of six such numbers.

@@ -12,7 +12,7 @@ MOST_CANDIDATES = 30_000
 def suppressed(
     boxes: NDArray[np.float32], scores: NDArray[np.float32], classes: NDArray[np.int32], iou: float, most: int
 ) -> NDArray[np.intp]:
-    """The indices of the kept boxes, the most certain first.
+    """Return the indices of the kept boxes, the most certain first.
 
     Args:
         boxes: shape ``(n, 4)``: left, top, right, bottom.

@@ -110,7 +110,7 @@ class Detect3DNode(SingleNode):
             self._markers.publish(_markers(self.FORM, found, places))
 
     def _places(self, message: Any) -> list[Place | None]:
-        """The positions of detections, in the optical frame of their image."""
+        """Return the positions of detections, in the optical frame of their image."""
         camera = self._cameras.get("colour") or self._cameras.get("depth")
         if camera is None:
             self._complain("no camera_info has arrived")
@@ -148,7 +148,7 @@ class Detect3DNode(SingleNode):
         return depths if image.encoding == "32FC1" else depths * self._unit
 
     def _ground_below(self, message: Any) -> tuple[NDArray[np.float64], float] | None:
-        """The direction up in the optical frame, and the height of the camera."""
+        """Return the direction up in the optical frame, and the height of the camera."""
         if not self._ground:
             return None
         header = message.header
@@ -159,7 +159,7 @@ class Detect3DNode(SingleNode):
         return np.array(rotate((-x, -y, -z, w), (0.0, 0.0, 1.0))), pose[2]
 
     def _placed(self, detection: Any, place: Place, pose: Transform, header: Any) -> Any:
-        """A detection with its position in the target frame: a box with x along the view and z up."""
+        """Return a detection with its position in the target frame: a box with x along the view and z up."""
         middle = compose(pose, (*place.centre, *_FORWARD))
         return self.FORM.placed(detection, header, middle, (place.depth, place.width, place.height))
 
@@ -176,7 +176,7 @@ class YoloDetect3DNode(Detect3DNode):
 
 
 def _markers(form: DetectionForm, found: Any, places: list[Place]) -> Any:
-    """A visualization_msgs/msg/MarkerArray with a box and a label for each detection."""
+    """Return a visualization_msgs/msg/MarkerArray with a box and a label for each detection."""
     kind = get_message("visualization_msgs/msg/Marker")
     array = get_message("visualization_msgs/msg/MarkerArray")()
     array.markers.append(kind(header=found.header, action=kind.DELETEALL))

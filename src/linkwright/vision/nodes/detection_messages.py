@@ -58,7 +58,7 @@ def image_message(header: Any, image: NDArray[np.uint8]) -> Any:
 
 
 def _centres(found: Detections) -> list[list[float]]:
-    """Centre and size of each box, in pixels."""
+    """Return the centre and size of each box, in pixels."""
     corners = found.boxes.astype(np.float64)
     middle, size = (corners[:, :2] + corners[:, 2:]) / 2, corners[:, 2:] - corners[:, :2]
     rows: list[list[float]] = np.hstack([middle, size]).tolist()

@@ -26,7 +26,7 @@ class DetectionForm(ABC):
         self.images, self.places = images, places
 
     def read(self, message: Any) -> Detections:
-        """The detections of a message, in its order, each by its best hypothesis."""
+        """Return the detections of a message, in its order, each by its best hypothesis."""
         best = [self.best(detection) for detection in message.detections]
         names = tuple(dict.fromkeys(name for name, _ in best))
         return Detections(
@@ -37,26 +37,26 @@ class DetectionForm(ABC):
         )
 
     def with_id(self, detection: Any, number: int) -> Any:
-        """A detection with the id of a tracker."""
+        """Return a detection with the id of a tracker."""
         tracked = copy(detection)
         tracked.id = str(number)
         return tracked
 
     @abstractmethod
     def best(self, detection: Any) -> tuple[str, float]:
-        """The class and the score of a detection's best hypothesis; an empty class for none."""
+        """Return the class and the score of a detection's best hypothesis; an empty class for none."""
 
     @abstractmethod
     def box(self, detection: Any) -> NDArray[np.float64]:
-        """Left, top, right and bottom of a detection in pixels: shape ``(4,)``."""
+        """Return the left, top, right and bottom of a detection in pixels, shape ``(4,)``."""
 
     @abstractmethod
     def placed(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
-        """A detection with its position: centre and size of a box in metres, in the frame of the header."""
+        """Return a detection with its position: centre and size of a box in metres, in the frame of the header."""
 
     @abstractmethod
     def place(self, detection: Any) -> Any:
-        """The box in metres of a detection with a position: a message with ``center`` and ``size``."""
+        """Return the box in metres of a detection with a position: a message with ``center`` and ``size``."""
 
 
 class _Vision(DetectionForm):

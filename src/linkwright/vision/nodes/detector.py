@@ -135,7 +135,7 @@ class DetectorNode(SingleNode):
         self._worker = LatestWorker(load, f"{node.get_name()} detector")
 
     def close(self) -> None:
-        """End it."""
+        """Close the node and its detector."""
         if self._lazy is not None:
             self._lazy.close()
         self._worker.close()
@@ -201,7 +201,7 @@ class DetectorNode(SingleNode):
         return QoSProfile(depth=1, reliability=known[reliability])
 
     def _limits_of(self, changed: dict[str, Any], known: Sequence[str] | None) -> Limits:
-        """The limits of the parameters, some of them replaced.
+        """Return the limits of the parameters, some of them replaced.
 
         Args:
             changed: the others, by name.
@@ -281,7 +281,7 @@ class DetectorNode(SingleNode):
     # --- in the worker's thread ----------------------------------------------------------------------------------
 
     def _load(self, model: str, options: DetectorOptions) -> Callable[[_Task], None] | None:
-        """Load the detector; a function that runs it on an image."""
+        """Load the detector, and return a function that runs it on an image."""
         try:
             detector = make_detector(model, options)
         except LinkwrightError as error:

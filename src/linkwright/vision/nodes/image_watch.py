@@ -82,7 +82,7 @@ class ImageWatch:
         return phrase("no image has arrived on '{topic}' for {seconds} s", topic=topic, seconds=seconds), None
 
     def _others(self) -> Phrase | None:
-        """The topics that have images."""
+        """Return the topics that have images."""
         passed = {self._source.topic, *(publisher.name for publisher in self._node.publishers)}
         topics = [
             name

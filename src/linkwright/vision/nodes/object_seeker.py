@@ -111,7 +111,7 @@ class ObjectSeeker(SingleNode):
         return self._node.get_clock().now().nanoseconds
 
     def _begin(self, language: str | None, follow: bool, message: Any) -> None:
-        """Seek the object that a message names. Answers are in a language, or for None in the message's."""
+        """Seek the object that a message names, and answer in a language; None means the language of the message."""
         request = requested(message.data)
         if request is None:
             self._node.get_logger().warning(f"'{message.data}' names nothing to go to; say 'ball' or 'red ball'")
@@ -165,7 +165,7 @@ class ObjectSeeker(SingleNode):
         self._velocity.publish((move.linear, 0.0, 0.0), (0.0, 0.0, move.angular))
 
     def _begin_trip(self) -> bool:
-        """Drive to the found object by nav2; whether that is configured, and nav2 there."""
+        """Drive to the found object by nav2, and return whether nav2 is configured and available."""
         trip, target = self._trip, self._target
         pose = self._poses.pose(self._fixed, self._base, 0)
         if trip is None or target is None or pose is None or self._seeker.follow or not trip.is_served:
@@ -206,7 +206,7 @@ class ObjectSeeker(SingleNode):
         )
 
     def _chosen(self, pose: Transform) -> SeenObject | None:
-        """The seen object to drive to: the same as before, or else the nearest."""
+        """Return the seen object to drive to: the same as before, or else the nearest."""
         assert self._request is not None, "it is asked for while it seeks"
         fitting = [
             seen_object
@@ -226,7 +226,7 @@ class ObjectSeeker(SingleNode):
         return min(fitting, key=lambda candidate: hypot(*_within(pose, candidate)), default=None)
 
     def _free(self, now_ns: int) -> float:
-        """Metres from the robot's centre to a laser's nearest point ahead; 0 if the laser has fallen silent."""
+        """Return the distance in m from the robot's centre to the nearest point ahead; 0 if the laser is silent."""
         scan = self._scan
         if scan is None:
             return inf
@@ -252,7 +252,7 @@ class ObjectSeeker(SingleNode):
 
 
 def _within(pose: Transform, seen_object: SeenObject) -> tuple[float, float]:
-    """The distance of an object ahead and to the left of the robot, metres."""
+    """Return the distance of an object ahead and to the left of the robot, metres."""
     x, y, _, *turn = invert(pose)
     ahead, left, _ = rotate((turn[0], turn[1], turn[2], turn[3]), (seen_object.x, seen_object.y, 0.0))
     return ahead + x, left + y

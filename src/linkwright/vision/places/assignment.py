@@ -8,7 +8,7 @@ from linkwright.vision.places.camera import Floats
 
 
 def assign(costs: Floats, most: float) -> list[tuple[int, int]]:
-    """Pairs of rows and columns, each at most once, of least total cost; none costs more than `most`.
+    """Return pairs of rows and columns of minimum total cost; no pair costs more than `most`.
 
     To stay alone costs as much as `most` does, so that a pair is never made at the price of two bad ones.
 
@@ -33,7 +33,7 @@ def assign(costs: Floats, most: float) -> list[tuple[int, int]]:
 
 
 def _owners(costs: Floats) -> list[int]:
-    """The row of each column in the assignment of least cost, -1 for none; there are as many columns as rows."""
+    """Return the row of each column in the minimum-cost assignment, -1 for none; rows must not exceed columns."""
     rows, columns = costs.shape
     row_prices, column_prices = np.zeros(rows), np.zeros(columns)
     owner = [-1] * columns

@@ -42,7 +42,7 @@ class CameraModel:
     distortion: tuple[float, ...] = ()
 
     def rays(self, pixels: Floats) -> Floats:
-        """The viewing rays of pixels.
+        """Return the viewing rays of pixels.
 
         Args:
             pixels: shape ``(n, 2)``, columns and rows.

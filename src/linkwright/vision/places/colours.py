@@ -60,7 +60,7 @@ def colour_of(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | None
 
 
 def named_colours(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
-    """The indices in `COLOURS` of pixels: red, green, blue, shape ``(n, 3)``."""
+    """Return the indices in `COLOURS` of pixels: red, green, blue, shape ``(n, 3)``."""
     values = np.ascontiguousarray(pixels.T) / 255.0  # a row a channel: compared in half of the time
     most, least = values.max(axis=0), values.min(axis=0)
     chroma = most - least
@@ -75,7 +75,7 @@ def named_colours(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
 
 
 def _named_hues(values: Floats, most: Floats, chroma: Floats, saturation: Floats) -> NDArray[np.intp]:
-    """The places in `COLOURS` of pixels that are neither grey, white nor black."""
+    """Return the places in `COLOURS` of pixels that are neither grey, white nor black."""
     hue = _hue(values, most, chroma)
     found = np.full(len(hue), COLOURS.index("red"), np.intp)
     for limit, name in reversed(_HUES):
@@ -89,7 +89,7 @@ def _named_hues(values: Floats, most: Floats, chroma: Floats, saturation: Floats
 
 
 def _hue(values: Floats, most: Floats, chroma: Floats) -> Floats:
-    """The hue in degrees, 0 for red and for grey."""
+    """Return the hue in degrees, 0 for red and for grey."""
     red, green, blue = values
     safe = np.maximum(chroma, 1e-9)
     sixths = np.where(

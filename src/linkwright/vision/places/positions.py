@@ -139,7 +139,7 @@ def _gap(depth: float) -> float:
 
 
 def _nearest_surface(known: Floats) -> tuple[float, float]:
-    """The nearest and the farthest depth of the nearest surface of sufficient size, of sorted depths."""
+    """Return the nearest and the farthest depth of the nearest surface of sufficient size, of sorted depths."""
     gaps = np.diff(known) > np.maximum(_GAP_METRES, _GAP_SHARE * known[:-1])
     surfaces = np.split(known, np.flatnonzero(gaps) + 1)
     for surface in surfaces:

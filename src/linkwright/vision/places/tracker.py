@@ -98,7 +98,7 @@ class _Seen:
 
 
 class Tracker:
-    """Gives objects ids, which are never used again.
+    """Assigns objects IDs, which are never used again.
 
     Args:
         settings: how.
@@ -146,7 +146,7 @@ class Tracker:
         return [owners[index].id if index in owners else 0 for index in range(len(detections))]
 
     def _correct(self, tracks: Sequence[_Track], candidates: Sequence[int], seen: _Seen) -> dict[int, _Track]:
-        """Correct tracks by matching detections; returns them by the detection."""
+        """Correct tracks by their matching detections, and return the tracks by detection."""
         owners: dict[int, _Track] = {}
         for row, column in self._pairs(tracks, candidates, seen):
             track, index = tracks[row], candidates[column]
@@ -173,7 +173,7 @@ class Tracker:
 
 
 def overlaps(first: NDArray[np.floating], second: NDArray[np.floating]) -> Floats:
-    """The intersection over union of each of some boxes with each of others.
+    """Return the intersection over union of each of some boxes with each of others.
 
     Args:
         first: left, top, right, bottom: shape ``(n, 4)``.

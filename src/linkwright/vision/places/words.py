@@ -143,7 +143,7 @@ class Sighting:
 
 
 def object_name(name: str) -> str:
-    """A common name for all names of an object: lower case, singular; ``ball`` for ``football`` and ``球``."""
+    """Return a common name for all names of an object: lower case, singular; ``ball`` for ``football`` and ``球``."""
     plain = name.strip().lower()
     if plain in _FIRST:
         return _FIRST[plain]
@@ -168,7 +168,7 @@ def requested(text: str) -> ObjectRequest | None:
 
 
 def described(sightings: Iterable[Sighting], language: str) -> str:
-    """A sentence about seen objects, nearest first: *I see a red ball 1.2 m ahead and two crates*."""
+    """Return a sentence about seen objects, nearest first: *I see a red ball 1.2 m ahead and two crates*."""
     groups: dict[str, list[Sighting]] = {}
     for sighting in sorted(sightings, key=lambda sighting: hypot(sighting.ahead, sighting.left)):
         groups.setdefault(named(sighting.name, sighting.colour, language), []).append(sighting)
@@ -180,7 +180,7 @@ def described(sightings: Iterable[Sighting], language: str) -> str:
 
 
 def named(name: str, colour: str | None, language: str) -> str:
-    """An object with its colour: *red ball*, 红色的球."""
+    """Return an object with its colour: *red ball*, 红色的球."""
     words = [word for word in words_of(name) if word not in SPELLINGS]
     shown = named_colour(name) or colour
     noun = " ".join(words)

@@ -48,7 +48,7 @@ def card(name: str, facts: Mapping[str, str], examinations: Sequence[Examination
 
 
 def made_of(folder: Path) -> dict[str, str]:
-    """The part of a dataset's card about its making; empty for a dataset of another program."""
+    """Return the part of a dataset's card about its making; empty for a dataset of another program."""
     making = _making(folder)
     if making is None:
         return {}
@@ -58,7 +58,7 @@ def made_of(folder: Path) -> dict[str, str]:
 
 
 def origin(folder: Path, lesson: Path) -> str:
-    """The worlds of a dataset's images, and whether the network was trained on them, too.
+    """Return the worlds of a dataset's images, and whether the network was trained on them, too.
 
     Args:
         folder: of the dataset that judges.
@@ -97,7 +97,7 @@ def _making(folder: Path) -> _Making | None:
 
 
 def table(figures: Evaluation) -> list[str]:
-    """The figures of all classes, as lines of a Markdown table."""
+    """Return the figures of all classes, as lines of a Markdown table."""
     lines = ["| class | objects | mAP50 | mAP50-95 | precision | recall |", f"| --- |{' ---: |' * 5}"]
     lines += [_row(row) for row in figures.classes]
     objects = sum(row.objects for row in figures.classes)
@@ -139,7 +139,7 @@ def _number(value: float | None) -> str:
 
 
 def _failures(examination: Examination) -> list[str]:
-    """The classes that are often missed or confused."""
+    """Return the classes that are often missed or confused."""
     lines = []
     for name, objects, recall in examination.figures.recall_by_size:
         if objects and recall < _WEAK:

@@ -75,7 +75,7 @@ def read_lesson(labelled: Sequence[Labelled], width: int, height: int) -> Lesson
 
 
 def repeats(lesson: Lesson, classes: int) -> NDArray[np.float64]:
-    """How often each image is used in an epoch: once, or more often where it shows a rare class.
+    """Return how often each image is used in an epoch: once, or more often if it shows a rare class.
 
     A class that is in a share f of the images counts as rare below the median m of these shares; its images are
     seen sqrt(m / f) times, as with the repeat factors of LVIS (Gupta and others 2019).
@@ -94,7 +94,7 @@ def repeats(lesson: Lesson, classes: int) -> NDArray[np.float64]:
 
 
 def repeated(times: NDArray[np.float64], chance: np.random.Generator) -> NDArray[np.int64]:
-    """The indices of images, each repeated; fractions are drawn at random."""
+    """Return the indices of images, each repeated; fractions are drawn at random."""
     whole: NDArray[np.int64] = np.floor(times + chance.random(len(times))).astype(np.int64)
     return np.repeat(np.arange(len(times)), whole)
 
@@ -102,7 +102,7 @@ def repeated(times: NDArray[np.float64], chance: np.random.Generator) -> NDArray
 def changed(
     lesson: Lesson, place: int, view: View, chance: np.random.Generator
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-    """Augment an image: a random part, moved, with other light and colours.
+    """Return a sample with random augmentation: a random part, moved, with other light and colours.
 
     It is mirrored and scaled; brightness, contrast, colours and sharpness change, and noise is added.
 

@@ -64,7 +64,7 @@ class Dataset:
     splits: Mapping[str, tuple[Path, ...]]
 
     def read(self, split: str) -> list[Labelled]:
-        """The images of a split, sorted by their paths, with their labels.
+        """Return the images of a split, sorted by their paths, with their labels.
 
         Raises:
             LinkwrightError: VISION303, there is no such split, or no image in it; VISION304, a label that cannot be.
@@ -149,7 +149,7 @@ def _no_dataset(path: Path, reason: Phrase | Any, hint: Phrase | None = None) ->
 
 
 def _hidden(file: Path, names: tuple[str, ...]) -> dict[str, list[list[float]]]:
-    """The ignored regions of COCO's list of a split (``iscrowd``), for which the texts have no word.
+    """Return the ignored regions of COCO's list of a split (``iscrowd``), for which the texts have no word.
 
     Returns:
         Name of the image -> class, left, top, right, bottom as shares; nothing where there is no such list.
@@ -199,7 +199,7 @@ def _labelled(path: Path, classes: int, hidden: Sequence[list[float]]) -> Labell
 
 
 def labels_of(image: Path) -> Path:
-    """The file with an image's labels: the last folder named ``images`` of its path is ``labels`` there."""
+    """Return the file with an image's labels: the last folder named ``images`` of its path is ``labels`` there."""
     parts = list(image.parts)
     for place in range(len(parts) - 2, -1, -1):
         if parts[place] == "images":

@@ -127,7 +127,7 @@ def _judging_split(dataset: Dataset) -> str:
 def _facts(
     options: Options, dataset: Dataset, lesson: Sequence[Labelled], epochs: int, best: int, network: Network
 ) -> dict[str, str]:
-    """The facts on the making, for the card."""
+    """Return the facts on the making, for the card."""
     parameters = sum(parameter.numel() for parameter in network.parameters())
     asked = sum(int((~labelled.ignored).sum()) for labelled in lesson)
     return {
@@ -155,7 +155,7 @@ def _beginning(weights: Path | None) -> dict[str, str]:
 
 
 def sum_of(lesson: Sequence[Labelled]) -> str:
-    """SHA-256 over images and labels, in order, to identify a dataset."""
+    """Return the SHA-256 of images and labels, in order, to identify a dataset."""
     whole = hashlib.sha256()
     for labelled in lesson:
         whole.update(hashlib.sha256(labelled.path.read_bytes()).digest())

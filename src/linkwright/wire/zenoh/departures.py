@@ -34,7 +34,7 @@ class _Gone:
     Attributes:
         key: the key expression of its token.
         token: its token.
-        due: when it is judged, by the steady clock.
+        due: the time at which it is judged, in seconds of the steady clock.
     """
 
     key: str
@@ -99,7 +99,7 @@ class Departures:
             self._gone.append(_Gone(key, token, self._now() + GRACE))
 
     def review(self) -> float | None:
-        """Report the publishers that count as lost by now.
+        """Report the publishers that now count as lost.
 
         Returns:
             The seconds until the next call, or None if no call is needed.

@@ -207,7 +207,7 @@ class Engine(AnyEngine):
                 self._remote.forget_endpoints(kind, mirrored.token.data_key)
 
     def _announce(self, endpoint: Any, mirrored: Any) -> None:
-        """Announce an endpoint that can be reached by now."""
+        """Announce an endpoint that has become reachable."""
         self._mirrored[endpoint] = mirrored
         if endpoint.is_listed:
             self._tokens[endpoint] = self._session.liveliness().declare_token(mirrored.token.key)

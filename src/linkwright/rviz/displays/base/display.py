@@ -58,7 +58,7 @@ _RANK: dict[StatusLevel, int] = {"ok": 0, "warn": 1, "error": 2}
 
 
 def worst(rows: list[StatusRow]) -> StatusLevel:
-    """Return the level of a display's own row: the worst of its status rows."""
+    """Return the level of a display's own row, which is the most severe of its status rows."""
     return max((row.level for row in rows), key=_RANK.__getitem__, default="ok")
 
 
@@ -100,7 +100,7 @@ class ViewerDisplay:
 
     @classmethod
     def messages_shown(cls) -> tuple[str, ...]:
-        """Return the types of the topics that it can be added for."""
+        """Return the types of topics for which the display can be added."""
         message: str = getattr(cls, "MESSAGE", "")
         return (message,) if message else ()
 
@@ -209,7 +209,7 @@ class ViewerDisplay:
         """Handle a reset of time: forget earlier messages."""
 
     def messages(self) -> list[ServerMessage]:
-        """Return messages for a page that opens now, besides the display's row."""
+        """Return messages for a page that opens now, in addition to the display's row."""
         return []
 
     def data(self) -> list[Payload]:
@@ -218,7 +218,7 @@ class ViewerDisplay:
 
 
 class DataDisplay(ViewerDisplay):
-    """A display with content and with status rows that come and go one by one."""
+    """A display whose content and status rows are added and removed one by one."""
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)

@@ -30,7 +30,7 @@ class StoredMarkersDisplay(TopicDisplay):
         self.context.meshes.replace(self.id, {})
 
     def data(self) -> list[Payload]:
-        """The markers."""
+        """Return the markers."""
         return [self._store]
 
     def receive(self, message: Any) -> None:

@@ -25,7 +25,7 @@ from linkwright.rviz.displays.base.display import DataDisplay, DisplayHost, Pose
 
 
 class SideTopic:
-    """Subscribes to a topic beside the display's own. While time is paused its messages wait.
+    """Subscribes to a topic in addition to the display's own; while time is paused, its messages wait.
 
     Args:
         host: the display's host.
@@ -71,7 +71,7 @@ class SideTopic:
 
 
 def camera_info_topic(image: str) -> str:
-    """Return the topic of an image's CameraInfo by ROS's convention: beside the image, whatever its transport."""
+    """Return the CameraInfo topic of an image by ROS's convention: in the namespace of the image."""
     for transport in ("/compressed", "/compressedDepth", "/theora"):
         image = image.removesuffix(transport)
     return image.rpartition("/")[0] + "/camera_info"
@@ -315,7 +315,7 @@ class TopicDisplay(DataDisplay, ABC):
         self._report_count_later()
 
     def _is_awaited(self) -> bool:
-        """Whether messages are rare and the topic has a publisher for them."""
+        """Return whether messages are rare and the topic has a publisher for them."""
         message, topic, _ = self.subscription()
         publishers = self.context.published.publishers(topic)
         return self.OCCASIONAL and self._incompatibility is None and any(kind == message for _, kind in publishers)

@@ -260,7 +260,7 @@ def _in_link(shape: Shape) -> Transform:
 
 
 def _own_color(shape: Shape) -> Color:
-    """Return the description's colour. It tints a mesh's own materials, so that white does not change them."""
+    """Return the colour from the description, which tints a mesh's own materials; white changes nothing."""
     if shape.kind == "mesh" and not (shape.format or "").startswith("stl"):
         alpha = shape.color[3] if shape.color else 1.0
         return (1.0, 1.0, 1.0, alpha)

@@ -142,7 +142,7 @@ class MotionPlayer:
         self._begin()
 
     def property_changed(self, path: Path) -> None:
-        """Play the last motion again if it loops from now on."""
+        """Play the last motion again if the loop was just switched on."""
         if path == (*self._above, _LOOP) and self._flag(_LOOP) and not self.is_playing:
             self.begin_again()
 
@@ -247,7 +247,7 @@ class TrajectoryDisplay(MoveItDisplay):
         self._player.play(message)
 
     def changed(self, path: Path) -> None:
-        """Draw again; restart the motion if it loops from now on."""
+        """Draw again, and restart the motion if the loop was just switched on."""
         super().changed(path)
         self._player.property_changed(path)
 

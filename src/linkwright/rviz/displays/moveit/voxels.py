@@ -110,7 +110,7 @@ _STEPS = (1, -1, 1 << _BITS, -(1 << _BITS), 1 << 2 * _BITS, -(1 << 2 * _BITS))
 
 
 def _codes(places: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return a code for each cell in the grid of cells of one size; a tree's grid has 2^16 of them along an axis."""
+    """Return the code of each cell in the grid of cells of one size, which has 2^16 cells along each axis."""
     shifted = places + (1 << (_BITS - 1))
     codes: NDArray[np.int64] = shifted[:, 0] << 2 * _BITS | shifted[:, 1] << _BITS | shifted[:, 2]
     return codes

@@ -118,13 +118,13 @@ class Course:
         return torch.cuda.get_device_name(self._device) if self._device.type == "cuda" else platform.machine()
 
     def best_network(self) -> Network:
-        """The network with the best figures on the validation split, in evaluation mode."""
+        """Return the network with the best figures on the validation split, in evaluation mode."""
         network = deepcopy(self.smooth)
         network.load_state_dict(self.best)
         return network.cpu()
 
     def _is_evaluated(self) -> bool:
-        """Whether this epoch ends with an evaluation: each fifth does, and the last ones."""
+        """Return whether this epoch ends with an evaluation: each fifth does, and the last ones."""
         last = self.options.epochs
         return self.epoch % 5 == 0 or self.epoch > last - 3
 
@@ -149,7 +149,7 @@ class Course:
         return float(mean[0]), float(mean[1])
 
     def _batches(self, epoch: int) -> Iterator[tuple[NDArray[np.int64], int]]:
-        """The batches of an epoch, in an order that depends on seed and epoch only."""
+        """Yield the batches of an epoch, in an order that depends on seed and epoch only."""
         chance = np.random.default_rng((self.options.seed, epoch))
         order = chance.permutation(repeated(self._repeats, chance))
         size = min(self.options.batch, len(order))
@@ -168,7 +168,7 @@ class Course:
         return _tensor(images, self._device), torch.from_numpy(table).to(self._device)
 
     def _rate(self, steps: int) -> float:
-        """The learning rate: a short warm-up, then half a cosine down to nearly zero."""
+        """Return the learning rate: a short warm-up, then half a cosine down to nearly zero."""
         whole = self.options.epochs * steps
         done = min(1.0, self._step / max(1, whole))
         low = _LEAST_RATE + (1 - _LEAST_RATE) * (1 + math.cos(math.pi * done)) / 2
@@ -190,12 +190,12 @@ class Course:
         return evaluate(self.names, *self._examine(self.smooth))
 
     def balance(self, network: Network) -> float:
-        """The score threshold with the greatest F1, see `balanced_score`."""
+        """Return the score threshold with the greatest F1, see `balanced_score`."""
         return balanced_score(self.names, *self._examine(network))
 
     @torch.no_grad()
     def _examine(self, network: Network) -> tuple[list[GroundTruth], list[Detections]]:
-        """The labels of the validation split, and a network's detections."""
+        """Return the labels of the validation split, and a network's detections."""
         found: list[Detections] = []
         device = next(network.parameters()).device
         for start in range(0, len(self._exam.objects), self.options.batch):
@@ -207,7 +207,7 @@ class Course:
         return [_truth(objects) for objects in self._exam.objects], found
 
     def _found(self, boxes: NDArray[np.float32], scores: NDArray[np.float32]) -> Detections:
-        """The detections in one image, of boxes (cells, 4) and scores (cells, classes)."""
+        """Return the detections in one image, of boxes (cells, 4) and scores (cells, classes)."""
         cells, kinds = np.nonzero(scores >= LIMITS.threshold)
         confidences: NDArray[np.float32] = scores[cells, kinds]
         classes: NDArray[np.int32] = kinds.astype(np.int32)
@@ -268,7 +268,7 @@ class Course:
 
 
 def _tensor(images: NDArray[np.uint8], device: torch.device) -> Tensor:
-    """Images, shape (batch, height, width, 3), as a tensor for the network."""
+    """Return images, shape (batch, height, width, 3), as a tensor for the network."""
     return torch.from_numpy(images).to(device).permute(0, 3, 1, 2).float().div_(255)
 
 

@@ -29,7 +29,7 @@ class _Decoded(nn.Module):
         self.shift = math.log((1 - balance) / balance)
 
     def forward(self, images: Tensor) -> Tensor:
-        """Shape (batch, 4 + classes, cells): middle, width and height in pixels, then the classes' scores."""
+        """Return a tensor of shape (batch, 4 + classes, cells): centre, width and height in pixels, then the scores."""
         boxes, logits = self.network(images)
         first, last = boxes[..., :2], boxes[..., 2:]
         return torch.cat(((first + last) / 2, last - first, (logits + self.shift).sigmoid()), 2).transpose(1, 2)

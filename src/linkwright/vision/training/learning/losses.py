@@ -37,7 +37,7 @@ class Assignment:
 
 
 def overlaps(first: Tensor, second: Tensor) -> tuple[Tensor, Tensor]:
-    """The overlap of boxes.
+    """Return the overlap of boxes.
 
     Args:
         first: shape (..., 4), left, top, right, bottom.
@@ -95,7 +95,7 @@ def assign(boxes: Tensor, logits: Tensor, middles: Tensor, objects: Tensor) -> A
 
 
 def loss(boxes: Tensor, logits: Tensor, middles: Tensor, objects: Tensor) -> tuple[Tensor, Tensor]:
-    """The loss of a batch; the arguments are those of `assign`.
+    """Return the loss of a batch; the arguments are those of `assign`.
 
     Returns:
         The loss, and its parts for boxes and scores, shape (2,), without gradients.

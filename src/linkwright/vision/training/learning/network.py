@@ -47,7 +47,7 @@ class Convolution(nn.Module):
         self.norm = nn.BatchNorm2d(outputs, eps=1e-3, momentum=0.03)
 
     def forward(self, features: Tensor) -> Tensor:
-        """Features of shape (batch, inputs, height, width) to (batch, outputs, height / stride, width / stride)."""
+        """Map features of shape (batch, inputs, height, width) to (batch, outputs, height / stride, width / stride)."""
         return functional.silu(self.norm(self.convolution(features)), inplace=True)
 
 
@@ -65,7 +65,7 @@ class HalfStage(nn.Module):
         self.residual = residual
 
     def forward(self, features: Tensor) -> Tensor:
-        """The same size, with `outputs` channels."""
+        """Return the same size, with `outputs` channels."""
         kept, worked = self.split(features).chunk(2, 1)
         for block in self.blocks:
             worked = worked + block(worked) if self.residual else block(worked)
@@ -82,7 +82,7 @@ class Pooling(nn.Module):
         self.join = Convolution(channels * 2, channels)
 
     def forward(self, features: Tensor) -> Tensor:
-        """The same shape."""
+        """Return the same shape."""
         seen = [self.narrow(features)]
         for _ in range(3):
             seen.append(self.pool(seen[-1]))
@@ -101,7 +101,7 @@ class Head(nn.Module):
         nn.init.constant_(self.box[-1].bias, 1.0)
 
     def forward(self, features: Tensor) -> Tensor:
-        """Shape (batch, 4 + classes, height * width): logarithms of the sides' distances, then the classes' logits."""
+        """Return the logarithms of the distances of the sides, then the logits of the classes."""
         shared = self.shared(features)
         boxes, scores = self.box[0](shared), self.scores[0](shared)
         # With the 8 digits of bfloat16 a side would be 1 % too long or too short.
@@ -132,7 +132,7 @@ class Network(nn.Module):
         self.heads = nn.ModuleList(Head(width * c, shape.classes) for width in (4, 8, 8))
 
     def forward(self, images: Tensor) -> tuple[Tensor, Tensor]:
-        """Predict.
+        """Return the predictions for a batch of images.
 
         Args:
             images: shape (batch, 3, height, width), red, green, blue between 0 and 1; both sides are multiples of 32.
@@ -163,7 +163,7 @@ def _doubled(features: Tensor) -> Tensor:
 
 @cache
 def cells(width: int, height: int, device: torch.device = _CPU) -> tuple[Tensor, Tensor]:
-    """The positions of the cells of all levels in an image of this size.
+    """Return the positions of the cells of all levels in an image of this size.
 
     Returns:
         Their middles in pixels, shape (cells, 2), and the strides of their levels, shape (cells, 1).

@@ -61,7 +61,7 @@ class Optimizer:
             kernel.add_(orthogonal(kernel.grad.lerp(momentum, _MOMENTUM)), alpha=-size)
 
     def state_dict(self) -> dict[str, Any]:
-        """The state for a checkpoint."""
+        """Return the state for a checkpoint."""
         return {"adamw": self._adamw.state_dict(), "momenta": self._momenta}
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
@@ -72,7 +72,7 @@ class Optimizer:
 
 
 def orthogonal(gradient: Tensor) -> Tensor:
-    """The nearest matrix to a kernel whose singular values are all about 1, by the iteration of Newton and Schulz.
+    """Return the matrix nearest to a kernel with all singular values about 1 (Newton-Schulz iteration).
 
     Args:
         gradient: shape (outputs, inputs, height, width); its rows are the outputs.

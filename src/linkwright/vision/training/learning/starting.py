@@ -82,7 +82,7 @@ def _read(path: Path) -> tuple[tuple[str, ...], list[tuple[Tensor, Tensor]]]:
 
 
 def _in_order(network: Network) -> list[nn.Conv2d]:
-    """The convolutions in the order of the computation."""
+    """Return the convolutions in the order of the computation."""
     found: list[nn.Conv2d] = []
     layers = [module for module in network.modules() if isinstance(module, nn.Conv2d)]
     hooks = [module.register_forward_hook(lambda layer, _, __: found.append(layer)) for module in layers]
