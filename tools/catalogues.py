@@ -228,7 +228,9 @@ def compile_catalogues() -> None:
     for path in sorted(FOLDER.glob("*.po")):
         target = path.with_suffix(".mo")
         if not target.exists() or target.stat().st_mtime_ns < path.stat().st_mtime_ns:
-            part = target.with_suffix(f".{os.getpid()}")  # whole or not at all: tests run side by side
+            # Whole or not at all, and where no build looks for files: tests and builds run side by side.
+            part = FOLDER / "__pycache__" / f"{target.name}.{os.getpid()}"
+            part.parent.mkdir(exist_ok=True)
             catalogue = read(path)
             catalogue.creation_date = _NO_DATE
             with part.open("wb") as file:

@@ -110,9 +110,10 @@ def selections(positions: TextPositions, places: Iterable[types.Position]) -> li
             ranges += [(attribute.start, attribute.end) for attribute in element.tag.attributes()]
             ranges += [(attribute.value_start, attribute.value_end) for attribute in element.tag.attributes()]
         selection: types.SelectionRange | None = None
+        outer = ranges[0]
         for start, end in ranges:
-            if start <= offset <= end:
-                selection = types.SelectionRange(positions.range(start, end), selection)
+            if outer[0] <= start <= offset <= end <= outer[1]:
+                selection, outer = types.SelectionRange(positions.range(start, end), selection), (start, end)
         found.append(selection or types.SelectionRange(positions.whole()))
     return found
 
