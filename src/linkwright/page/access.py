@@ -1,19 +1,18 @@
-"""Access to the server: only with the token, under a name that is this machine's, and from its own pages.
+"""Access to the server: only with the token, under a host name of this machine, and from the server's own pages.
 
-The token is in the address that the program prints; the page keeps it in the browser's storage, which belongs to this
-host and port alone, and sends it when it opens its WebSocket. There is no cookie: browsers send cookies to any server
-on this machine, at any port, and for pages without the token. Names are checked because a
-stranger's site can give its own name this machine's address (DNS rebinding) and would then be of one origin with us.
-Connections that have not shown the token are limited in number and time.
+The token is in the address that the program prints. The page keeps it in the browser's storage, which belongs to this
+host and port alone, and sends it when it opens its WebSocket. There is no cookie, because browsers send cookies to any
+server on this machine, at any port, and also for pages that do not have the token. Host names are checked because a
+foreign site can point its own name to this machine's address (DNS rebinding), and would then have the same origin as
+the server. Connections that have not sent the token are limited in number and time.
 
-A page whose program ended looks for it at the same port, where another user's program may listen by then. It shows the
-token only to a server that proves to know it (`Gate.proof`).
+A page whose program has ended tries to reconnect at the same port, where another user's program may be listening by
+then. The page sends the token only to a server that proves that it knows the token (`Gate.proof`).
 
-The token of a port, stored for the next start, so that open pages reconnect when the program is started again.
-
-There is a file for each port, which only its user can read. A token is valid for a week after its creation, so that
-a leaked one does not give access for ever. Servers that other machines can reach do not store theirs: it goes over
-the network in plain text.
+The token of a port is stored for the next start, which lets open pages reconnect when the program is started again.
+There is a file for each port, which only its user can read. A token is valid for a week after its creation, which
+limits the damage of a leaked token. Servers that other machines can reach do not store their tokens, because these are
+sent over the network in plain text.
 """
 
 from __future__ import annotations
@@ -56,7 +55,7 @@ class PortToken:
 
     Attributes:
         token: the token that pages send.
-        pages_wait: whether pages were open at the end of the former program, which now look for this one.
+        pages_wait: whether pages were open when the former program ended, which now try to reconnect.
     """
 
     token: str
@@ -69,7 +68,7 @@ def token_folder() -> Path:
 
 
 def keep_token(port: int) -> PortToken:
-    """Return the token of the user's last program on a port, or a new one, and store it."""
+    """Return the token of the user's last program on a port, or a new token, and store it."""
     now = time.time()
     made, stored = _read(token_folder() / str(port))
     if stored is None or not 0.0 <= now - made < _LIFETIME:
@@ -79,7 +78,7 @@ def keep_token(port: int) -> PortToken:
 
 
 def leave_token(port: int, token: str, *, pages_wait: bool) -> None:
-    """Store at the end of a program whether its pages wait for the next one, unless the file has another token."""
+    """Store, when a program ends, whether its pages wait for the next one, unless the file has another token."""
     made, stored = _read(token_folder() / str(port))
     if stored is not None and stored.token == token:
         _write(port, made, PortToken(token, pages_wait))
@@ -107,7 +106,7 @@ def _is_private(facts: os.stat_result) -> bool:
 
 
 def _write(port: int, made: float, port_token: PortToken) -> None:
-    """Store a token; if the state cannot be written, the next program has another, which is not an error."""
+    """Store a token; failure is not an error, but the next program then has another token."""
     folder = token_folder()
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
@@ -122,11 +121,11 @@ TOKEN_PARAMETER = "token"  # noqa: S105 - the name of a query parameter
 
 
 class Gate:
-    """Checks requests.
+    """Checks whether requests may access the server.
 
     Args:
-        host: the name that the server is bound to, which is allowed too.
-        token: what opens the page.
+        host: the name that the server is bound to, which is also allowed.
+        token: the token that opens the page.
     """
 
     def __init__(self, host: str, token: str) -> None:
@@ -145,19 +144,19 @@ class Gate:
         return None
 
     def is_shown_token(self, query: Mapping[str, str]) -> bool:
-        """Return whether the query of a request has the token."""
+        """Return whether the query of a request contains the token."""
         given = query.get(TOKEN_PARAMETER)
         return given is not None and hmac.compare_digest(given.encode(errors="replace"), self.token.encode())
 
     def proof(self, nonce: str) -> str | None:
-        """Return the HMAC-SHA256 of a page's nonce (32 hexadecimal digits), which needs the token to compute.
+        """Return the HMAC-SHA256 of a page's nonce (32 hexadecimal digits), which requires the token to compute.
 
-        None for any other nonce. It reveals nothing about the token.
+        Return None for an invalid nonce. The result reveals nothing about the token.
         """
         return hmac.digest(self.token.encode(), nonce.encode(), "sha256").hex() if _NONCE.fullmatch(nonce) else None
 
     def knows(self, host_header: str) -> bool:
-        """Return whether a Host header names this machine: a bare address, localhost, or its own name."""
+        """Return whether a Host header names this machine: an IP address, localhost, or the machine's own name."""
         if not _PLAIN_HOST.fullmatch(host_header):
             return False
         try:
@@ -168,7 +167,7 @@ class Gate:
             ipaddress.ip_address(name)
         except ValueError:
             return name.removesuffix(".") in self._names
-        return True  # an IP address is not looked up, so it cannot have been rebound
+        return True  # an IP address is not resolved by DNS, so it cannot be rebound
 
 
 def _same(origin: str, host: str) -> bool:
@@ -180,12 +179,12 @@ def _same(origin: str, host: str) -> bool:
 
 
 def security_headers(host: str) -> dict[str, str]:
-    """Return headers for every answer.
+    """Return the security headers for every response.
 
-    Scripts come from files of ours only. They may evaluate text: ours never do, but browser automation waits for a
-    condition on ``window.linkwright`` that way, and without inline scripts there is no text of a stranger's to
-    evaluate. Styles may stand inline, which the dock and the property grid need; images and workers may also be made
-    by the page itself.
+    Scripts are loaded only from the server's files. They may evaluate text: the page's scripts never do, but browser
+    automation evaluates a condition on ``window.linkwright`` to wait for it, and without inline scripts there is no
+    foreign text to evaluate. Inline styles are allowed because the dock and the property grid need them. Images and
+    workers may also be created by the page itself.
     """
     policy = {
         "default-src": "'none'",
@@ -218,11 +217,12 @@ PATIENCE = 10.0
 
 
 class Admission:
-    """Limits the connections of a server.
+    """Limits the number of connections to a server.
 
-    When the limit is reached, a new one replaces the oldest that has neither shown the token yet nor named a file that
-    only its holders know; if all have, it is refused. So neither half-open connections nor a thousand at once block
-    others for long, and admitted connections are not affected.
+    When the limit is reached, a new connection replaces the oldest one that has neither sent the token nor requested a
+    file whose address only token holders know. If all connections have done so, the new one is refused. Half-open
+    connections, or a thousand simultaneous ones, can therefore not block others for long, and admitted connections are
+    not affected.
 
     Args:
         make: returns the protocol of a connection.
@@ -238,13 +238,13 @@ class Admission:
         return Entrance(self, self._make())
 
     def asked(self, served: object) -> None:
-        """Keep a connection that made a request until its place is needed, however slow its line is."""
+        """Keep a connection that has sent a request until its place is needed, however slow it is."""
         entrance = self._strangers.get(served)  # type: ignore[call-overload]
         if entrance is not None:
             entrance.may_stay()
 
     def admit(self, served: object) -> None:
-        """Keep a connection that has shown the token."""
+        """Keep a connection that has sent the token."""
         entrance = self._strangers.pop(served, None)  # type: ignore[call-overload]
         if entrance is not None:
             entrance.may_stay()
@@ -270,7 +270,7 @@ _PASSED_ON = ("data_received", "eof_received", "pause_writing", "resume_writing"
 
 
 class Entrance(asyncio.Protocol):
-    """Counts and bounds a connection at its beginning and end; its data goes directly to the protocol behind it."""
+    """Counts and limits a connection when it opens and closes; data goes directly to the inner protocol."""
 
     def __init__(self, admission: Admission, served: asyncio.Protocol) -> None:
         self.served = served
@@ -278,11 +278,11 @@ class Entrance(asyncio.Protocol):
         self._transport: asyncio.BaseTransport | None = None
         self._counted = False
         self._deadline: asyncio.TimerHandle | None = None
-        for name in _PASSED_ON:  # in place of methods that would only forward
+        for name in _PASSED_ON:  # copied directly, because these methods would only forward
             setattr(self, name, getattr(served, name))
 
     def may_stay(self) -> None:
-        """Cancel the deadline for the first request."""
+        """Cancel the deadline for the connection's first request."""
         if self._deadline is not None:
             self._deadline.cancel()
             self._deadline = None
@@ -299,7 +299,7 @@ class Entrance(asyncio.Protocol):
     # --- asyncio.Protocol --------------------------------------------------------------------------------------
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Serve the connection, if it may stay."""
+        """Serve the connection if it may stay."""
         self._transport = transport
         self._counted = self._admission.opened(self)
         self.served.connection_made(transport)

@@ -1,4 +1,4 @@
-"""The open pages, the sending and receiving of their messages, and the lateness of the event loop."""
+"""The open pages, the exchange of messages with them, and the lateness of the event loop."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ _LOOKS = 20
 
 
 class Lateness:
-    """Measures by how much the event loop is late, from its creation until it is closed.
+    """Measures how late the event loop runs, from its creation until it is closed.
 
-    Messages from a page wait as long before they are read, and messages to it before they are sent.
+    Messages from a page wait for that time before they are read, and messages to a page before they are sent.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
@@ -54,7 +54,7 @@ class Lateness:
 
     @property
     def mean(self) -> float:
-        """The mean of the last second, in seconds; 0.0 before anything is known."""
+        """The mean lateness over the last second, in seconds; 0.0 before the first measurement."""
         return sum(self._seen) / len(self._seen) if self._seen else 0.0
 
     def close(self) -> None:
@@ -82,7 +82,7 @@ _QUIET = 0.3
 
 
 def language_asked(request: Request) -> str:
-    """Return the language that a page requests in an address, one of `LANGUAGES`; by default the terminal's."""
+    """Return the language that a page requests in its address, one of `LANGUAGES`; by default the terminal's."""
     return language_of(request.query.get("language", "")) or language_of_terminal()
 
 
@@ -91,9 +91,9 @@ class Page:
 
     Args:
         socket: the page's socket.
-        own: the page's name for displays of its own; empty for a page that shares the common ones.
-        is_here: whether it is open on this machine, or connected through a tunnel to it.
-        language: the language of its user, one of `LANGUAGES`; None leaves texts as they are.
+        own: the name of the page's own set of displays; empty for a page that uses the shared displays.
+        is_here: whether the page is open on this machine or connected through a tunnel to it.
+        language: the language of the page's user, one of `LANGUAGES`; None leaves texts as they are.
     """
 
     def __init__(
@@ -114,7 +114,7 @@ class Page:
         self._completions = 0
 
     def open(self, opening: Iterable[Payload]) -> None:
-        """Set the messages that are sent first."""
+        """Set the messages that are sent first to the page."""
         self._opening = list(opening)
 
     def send(self, message: ServerMessage) -> None:
@@ -132,10 +132,10 @@ class Page:
             while True:
                 await self._send(await self.outbox.take())
         except ConnectionError:
-            pass  # the reader notices the end too, and cleans up
+            pass  # the reader also notices the end, and cleans up
 
     def received(self, count: int) -> None:
-        """Note how many messages the page has acknowledged."""
+        """Record the number of messages that the page has acknowledged."""
         self.line.received(count)
         self._line_changed()
 
@@ -164,7 +164,7 @@ class Page:
         self._line_changed()
 
     async def _fitted(self, payload: ScaledData) -> bytes:
-        """Return as much of a content as the line carries; the rest follows when the line is idle."""
+        """Return as much of the content as the connection can carry; the rest follows when it is idle."""
         room = self.line.room
         frame = await payload.fitting(room)
         if frame is payload.full_frame:
@@ -194,7 +194,7 @@ class Page:
             self._completing = asyncio.get_running_loop().call_later(_QUIET, self._complete)
 
     def _judge_lateness(self) -> None:
-        """Tell the page whether this program is the slow part, while it receives less than everything."""
+        """Inform the page whether this program is the bottleneck, while the page receives reduced data."""
         if self._lateness is None and self._reduced:
             self._lateness = Lateness(asyncio.get_running_loop())
         elif self._lateness is not None and not self._reduced:
@@ -206,7 +206,7 @@ class Page:
             self.send(ProgramIsLate(late))
 
     def _complete(self) -> None:
-        """Send the full content, which seldom changes, in pieces, however slow the line is."""
+        """Send the full content, which rarely changes, in chunks suited to the connection's speed."""
         self._completing = None
         for payload, _ in self._reduced.values():
             if payload.key not in self.outbox:
@@ -224,12 +224,12 @@ class Page:
             del self._reduced[completion.key]
 
     def _piece(self) -> int:
-        """Return the size of a piece in bytes; at most two are on the line."""
+        """Return the size of a chunk in bytes; at most two chunks are in transit."""
         return max(BULK, self.line.room // 2)
 
 
 class PageGroup:
-    """Pages that receive the same messages."""
+    """A group of pages that receive the same messages."""
 
     def __init__(self) -> None:
         self._pages: dict[Page, None] = {}
@@ -241,7 +241,7 @@ class PageGroup:
         return page in self._pages
 
     def add(self, page: Page) -> None:
-        """Add a page that receives messages from now on."""
+        """Add a page, which receives messages from now on."""
         self._pages[page] = None
 
     def discard(self, page: Page) -> None:
@@ -257,7 +257,7 @@ class PageGroup:
                 page.outbox.put(key, texts[page.language])
 
     def send_data(self, key: str, payload: Payload) -> None:
-        """Send a display's data to every page; data that waits under its key is dropped."""
+        """Send a display's data to every page, replacing data that is still queued under the same key."""
         for page in self._pages:
             page.outbox.put(key, payload)
 
@@ -271,10 +271,11 @@ class Audience(PageGroup):
     """All open pages.
 
     Args:
-        opening: the first messages for a page, the full present state.
-        receivers: the receivers of pages' messages, by the address of the class; others are ignored.
+        opening: returns the initial messages for a page, which are the full current state.
+        receivers: the receivers of messages from pages by the address of the message's class; other messages are
+            ignored.
         gone: called when a page has closed.
-        logger: logs messages outside of the protocol.
+        logger: logs invalid messages, and failures to handle a message.
     """
 
     def __init__(
@@ -294,7 +295,7 @@ class Audience(PageGroup):
 
     @property
     def is_full(self) -> bool:
-        """Whether no more pages are accepted."""
+        """Whether no more pages can be accepted."""
         return len(self) + self._expected >= MAXIMUM_PAGES
 
     @contextmanager
@@ -379,7 +380,7 @@ class Pace:
     """Limits the rate of a sender's messages, so that one page cannot block the others.
 
     Args:
-        clock: seconds.
+        clock: returns the time in seconds.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -388,7 +389,7 @@ class Pace:
         self._at = clock()
 
     def wait(self) -> float:
-        """Return the seconds to wait before a message is handled."""
+        """Return the number of seconds to wait before the next message is handled."""
         now = self._clock()
         self._left = min(_BURST, self._left + (now - self._at) * _RATE) - 1.0
         self._at = now

@@ -1,8 +1,8 @@
-"""The files that pages may fetch: meshes named by descriptions, files beside them, and files made for a page.
+"""The files that pages may fetch: meshes named by descriptions, files next to them, and generated files.
 
-A description may come from a stranger, and so may a request. A page is served only meshes and images, only from
-folders that the current descriptions name, and only if the real path, links followed, is still inside. A file that
-was made for a page can be fetched once, and soon; recordings that pages made, as long as the program runs.
+Neither a description nor a request can be trusted. A page is served only meshes and images, only from folders that the
+current descriptions name, and only if the real path, with links followed, is still inside. A file generated for a page
+can be fetched once, and only for a short time. Recordings that pages made can be fetched while the program runs.
 """
 
 from __future__ import annotations
@@ -57,12 +57,12 @@ _LOOSE_DEPTH = 2
 
 @dataclass(frozen=True, slots=True)
 class ServedFolder:
-    """A folder that pages may read from: that of a package, of a Gazebo model, or else of a loose mesh.
+    """A folder that pages may read from: the folder of a package, of a Gazebo model, or of a mesh outside of both.
 
     Attributes:
         root: the folder.
         package: the name of the package, if it is a package's folder.
-        is_model: whether it is a model's, which contains its meshes and textures.
+        is_model: whether the folder belongs to a model and contains its meshes and textures.
     """
 
     root: Path
@@ -71,9 +71,10 @@ class ServedFolder:
 
     @property
     def key(self) -> str:
-        """The key of the folder in addresses: readable, without the path above it, and hard to guess.
+        """The key of the folder in addresses: readable, without the path above the folder, and hard to guess.
 
-        The image elements of textures cannot send a token, so an address that only pages receive must do.
+        The image elements of textures cannot send a token, so the address itself, which only pages receive, must be
+        secret.
         """
         name = re.sub(r"[^A-Za-z0-9_.-]", "_", self.package or self.root.name)
         root = os.fsencode(self.root)
@@ -89,7 +90,7 @@ class Located:
 
 
 class FileRefusedError(Exception):
-    """A request for a file is refused.
+    """Raised when a request for a file is refused.
 
     Attributes:
         status: the HTTP status, 403 or 404.
@@ -102,7 +103,7 @@ class FileRefusedError(Exception):
 
 @dataclass(slots=True)
 class MeshIndex:
-    """Finds the files that one description names, and collects their folders."""
+    """Finds the files that one description refers to, and collects their folders."""
 
     finder: PackageFinder
     folders: dict[str, ServedFolder] = field(default_factory=dict)
@@ -113,12 +114,12 @@ class MeshIndex:
 
         Args:
             uri: the URI in the description: ``package://``, ``file://`` or a path.
-            base: the folder that a relative path starts from, that of the file with the URI.
+            base: the folder that relative paths refer to, which contains the file with the URI.
             types: the supported extensions.
         """
         package = _PACKAGE_URI.match(uri)
         if package and package[1] in self._unknown:
-            return self._unknown[package[1]]  # a robot names a package it lacks many times, and each search is long
+            return self._unknown[package[1]]  # robots refer to a missing package many times, and each search is slow
         try:
             path = Path(os.path.normpath(self.finder.resolve(uri, base)))
         except PackageNotFoundError as error:
@@ -159,7 +160,7 @@ class MeshIndex:
 
 
 def without_secrets(text: str) -> str:
-    """Return a text with addresses of files that give no access to the server, for others."""
+    """Return text, for others, with file addresses that give no access to the server."""
     return _SECRET_OF_KEY.sub(r"\1", text)
 
 
@@ -174,7 +175,7 @@ class MeshFolders:
         self._folders[owner] = folders
 
     def copy(self) -> MeshFolders:
-        """Return a copy, which later changes of the displays do not affect."""
+        """Return a copy that is not affected by later changes of the displays."""
         made = MeshFolders()
         made._folders.update(self._folders)
         return made
@@ -184,7 +185,7 @@ class MeshFolders:
 
         Args:
             key: the key of a folder.
-            relative: the path below it, percent-decoded.
+            relative: the path below the folder, percent-decoded.
 
         Raises:
             FileRefusedError: 404 if there is no such folder or file, 403 if it may not be read.
@@ -196,10 +197,10 @@ class MeshFolders:
 
 
 def resolve(folder: ServedFolder, relative: str) -> Path:
-    """Return the real path of a file below a folder, links followed and checked.
+    """Return the real path of a file below a folder, with links followed and checked.
 
-    A link may lead out of a package's folder only into another folder of the same package: that is how
-    ``colcon build --symlink-install`` lays share folders out.
+    A link may lead out of a package's folder only into another folder of the same package, because
+    ``colcon build --symlink-install`` arranges share folders that way.
 
     Raises:
         FileRefusedError: 404 if there is no such file, 403 if it may not be read.
@@ -226,7 +227,7 @@ def resolve(folder: ServedFolder, relative: str) -> Path:
 
 
 def _beside(path: Path) -> Path:
-    """Return a file, or the image of its name in the place where Gazebo models store images without a folder."""
+    """Return a file, or the image with its name in the folder where Gazebo models store images."""
     if path.suffix.lower() in IMAGE_TYPES and not path.exists():
         model = path.parent.parent
         texture = model / "materials" / "textures" / path.name
@@ -255,24 +256,24 @@ class Download:
 
 
 class Downloads:
-    """Files by keys that only the requesting page knows."""
+    """Files that can be fetched under secret keys, which only the requesting page knows."""
 
     def __init__(self) -> None:
         self._files: dict[str, Download] = {}
         self._reusable: dict[str, Path] = {}
 
     def keep(self, path: Path) -> str:
-        """Offer a file for any number of fetches; returns its address."""
+        """Offer a file for any number of fetches, and return its address."""
         key = secrets.token_urlsafe(16)
         self._reusable[key] = path
         return f"/export/{key}/{quote(path.name)}"
 
     def path(self, key: str) -> Path | None:
-        """Return the file with a key of `keep`."""
+        """Return the file with a key assigned by `keep`, or None."""
         return self._reusable.get(key)
 
     def put(self, file: Download) -> str:
-        """Offer a file for one fetch; returns its address."""
+        """Offer a file for one fetch, and return its address."""
         while len(self._files) >= _MOST_KEPT:
             del self._files[next(iter(self._files))]
         key = secrets.token_urlsafe(16)
@@ -280,7 +281,7 @@ class Downloads:
         return f"/export/{key}/{quote(file.name)}"
 
     def take(self, key: str) -> Download | None:
-        """Return the file with a key, and forget it."""
+        """Return the file with a key and remove it, or None."""
         now = time.monotonic()
         for old in [old for old, file in self._files.items() if now - file.made > _KEPT_SECONDS]:
             del self._files[old]

@@ -1,8 +1,8 @@
-"""aiohttp's server without its client, which takes about as long to load.
+"""Loads aiohttp's server without its client, which takes about as long to load as the server.
 
-``import aiohttp`` loads both, and the client reads the system's certificates twice as it does. Here the package is
-entered without running its ``__init__``, and only the modules that a server needs are loaded. ``__init__`` runs at the
-first access to one of its names, for example by a user's node that downloads a file.
+``import aiohttp`` loads both, and the client reads the system's certificates twice while it loads. This module
+registers the package without running its ``__init__``, and loads only the modules that a server needs. ``__init__``
+runs at the first access to one of its names, for example by a user's node that downloads a file.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any
 
 
 def _enter_package() -> None:
-    """Add aiohttp's package to the loaded modules, empty except for a hook that runs its ``__init__``."""
+    """Add an empty aiohttp package to the loaded modules, with a hook that runs its ``__init__`` on demand."""
     spec = find_spec("aiohttp")
     if spec is None or spec.loader is None or spec.origin is None:
         return  # the import below raises the error
@@ -25,11 +25,11 @@ def _enter_package() -> None:
 
     def missing(name: str) -> Any:
         if name == "__version__" and len(installed) == 1:
-            return installed[0].partition("-")[2]  # the server names itself by it
+            return installed[0].partition("-")[2]  # the server's name in its responses
         with lock:
             if package.__dict__.get("__getattr__") is missing:
                 if find_spec(f"aiohttp.{name}"):
-                    raise AttributeError(name)  # then `import` loads that module
+                    raise AttributeError(name)  # makes `import` load that module
                 del package.__dict__["__getattr__"]
                 loader.exec_module(package)
         return getattr(package, name)
@@ -39,7 +39,7 @@ def _enter_package() -> None:
 
 
 def _leave_package() -> None:
-    """Take all of aiohttp from among the loaded modules, so that it is loaded from the beginning."""
+    """Remove all of aiohttp from the loaded modules, so that it is loaded from scratch."""
     for name in [module for module in sys.modules if module == "aiohttp" or module.startswith("aiohttp.")]:
         del sys.modules[name]
 
@@ -50,7 +50,7 @@ if "aiohttp" not in sys.modules:
 try:
     from aiohttp import web
     from aiohttp.http_exceptions import HttpProcessingError
-except (AttributeError, ImportError):  # a later aiohttp, whose server needs `__init__`
+except (AttributeError, ImportError):  # a later aiohttp whose server needs `__init__`
     _leave_package()
     from aiohttp import web
     from aiohttp.http_exceptions import HttpProcessingError
@@ -59,7 +59,7 @@ __all__ = ["SERVER_LOGGER", "HttpProcessingError", "web"]
 
 
 def _is_the_servers_fault(record: logging.LogRecord) -> bool:
-    """Keep a client's mistakes out of the log: a malformed request, which is answered with 400, and leaving early."""
+    """Return whether to log a record: False for client errors, such as malformed requests and disconnects."""
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, (HttpProcessingError, web.RequestPayloadError, ConnectionError))
 

@@ -1,7 +1,7 @@
-"""The queue of payloads for a page, and the measured rate of the page's line.
+"""The queue of payloads for a page, and the measured rate of the page's connection.
 
-Of each kind only the newest waits, transforms precede the rest, and large content is reduced for a slow line or sent
-in pieces.
+Only the newest payload of each kind is queued, transforms precede all others, and large content is reduced for a slow
+connection or sent in chunks.
 """
 
 from __future__ import annotations
@@ -44,11 +44,14 @@ class ScaledData:
 
     @cached_property
     def full_frame(self) -> bytes:
-        """Return the frame with the full content."""
+        """The frame with the full content."""
         return self._pack(self._content)
 
     async def fitting(self, room: int) -> bytes:
-        """Return the frame with as much as fits into so many bytes; cached for pages of similar lines."""
+        """Return the frame with as much content as fits into `room` bytes.
+
+        It is cached for pages with similar connections.
+        """
         if len(self.full_frame) <= room:
             return self.full_frame
         size = 1 << (room.bit_length() - 1)
@@ -78,11 +81,11 @@ class InPieces:
 
     @property
     def done(self) -> bool:
-        """Whether all pieces were sent, or they are not needed any more."""
+        """Whether all chunks were sent, or are not needed any more."""
         return self.payload.gone or self._given >= len(self.payload.full_frame)
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
-        """Return the next piece, or None if there is none. The argument is ignored: pieces are counted here."""
+        """Return the next chunk, or None if there is none; the argument is ignored, because chunks are counted here."""
         if self.done:
             return None, seen
         size = self._size()
@@ -112,10 +115,10 @@ class Changes(Protocol):
         """Return the message or binary frame for a page.
 
         Args:
-            seen: the number that this returned for the page's last one; 0 for a page that has nothing.
+            seen: the number that this method returned for the page's previous message; 0 for a page that has nothing.
 
         Returns:
-            The frame, or None when the page has everything; and what the page will have seen then.
+            The frame, or None if the page has everything; and the number to pass for the next message.
         """
 
 
@@ -125,13 +128,13 @@ Payload = Outgoing | Changes | ScaledData
 class Outbox:
     """A queue of payloads by redundancy key.
 
-    A payload replaces one that waits under its key and goes to the end, so that payloads are sent in the order of their
-    creation; heavy content keeps its position, or the most frequent content would starve the rest. Frame tables and
-    transforms have a queue of their own, which alternates with the other one: a slider moves the scene before anything
-    else is sent, yet a slow page does not starve of the rest.
+    A payload replaces a queued payload with the same key and moves to the end, so payloads are sent in the order of
+    their creation. Large content keeps its position, because the most frequent content would otherwise starve the rest.
+    Frame tables and transforms have a separate queue that alternates with the other one: a slider moves the scene
+    before anything else is sent, but on a slow page the other payloads are not starved.
 
     Attributes:
-        is_held: the line is full: only frame tables and transforms are taken.
+        is_held: whether the connection is full, in which case only frame tables and transforms are taken.
     """
 
     def __init__(self) -> None:
@@ -146,7 +149,7 @@ class Outbox:
         return len(self._urgent) + len(self._ordinary)
 
     def put(self, key: str, payload: Payload) -> None:
-        """Queue a payload, replacing one that waits under the same key."""
+        """Queue a payload, replacing a queued payload with the same key."""
         line = self._urgent if key in _URGENT else self._ordinary
         before = line.get(key)
         if not (isinstance(before, ScaledData) and isinstance(payload, ScaledData) and not before.gone):
@@ -163,7 +166,7 @@ class Outbox:
         self._filled.set()
 
     async def take(self) -> Outgoing | ScaledData:
-        """Return the next payload, as soon as there is one."""
+        """Return the next payload, waiting until there is one."""
         while True:
             while not self._urgent and (self.is_held or not self._ordinary):
                 self._filled.clear()
@@ -176,7 +179,7 @@ class Outbox:
                 return made
 
     def make(self, payload: Payload) -> Outgoing | ScaledData | None:
-        """Return the message or frame to send for a payload now, or None."""
+        """Return the message or frame to send for a payload now, or None if there is nothing to send."""
         if isinstance(payload, (str, bytes)):
             return payload
         if isinstance(payload, ScaledData):
@@ -214,15 +217,15 @@ class _OnTheWay:
 class Line:
     """Measures the connection to one page.
 
-    Pages acknowledge large messages, which measures the full path, including tunnels with buffers of their own. For a
-    page that does not, only the time is known that the socket took to accept the data.
+    Pages acknowledge large messages, which measures the full path including tunnels that have their own buffers. For a
+    page that does not acknowledge them, only the time in which the socket accepted the data is known.
 
     Args:
-        clock: seconds.
+        clock: returns the time in seconds.
 
     Attributes:
-        rate: bytes a second; None as long as nothing is known.
-        took: seconds from a large message to its answer, a mean of the last ones; None as long as nothing is known.
+        rate: bytes per second; None until it is known.
+        took: the mean time from a large message to its acknowledgement, over the last ones, seconds; None until known.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -242,7 +245,7 @@ class Line:
 
     @property
     def is_full(self) -> bool:
-        """Whether large messages should wait until the page has received the earlier ones."""
+        """Whether large messages should wait until the page has received the earlier messages."""
         return self._answers and sum(on_the_way.size for on_the_way in self._on_the_way) >= self.room / 2
 
     @property
@@ -251,7 +254,7 @@ class Line:
         return self._answers and not self._on_the_way
 
     def sending(self, size: int) -> float:
-        """Note that a message of so many bytes is passed to the socket; returns the time for `sent`."""
+        """Record that a message of `size` bytes is passed to the socket; returns the time to pass to `sent`."""
         now = self._clock()
         self._number += 1
         if self._number == 1:
@@ -261,7 +264,7 @@ class Line:
         return now
 
     def sent(self, size: int, since: float) -> None:
-        """Note that the socket has accepted a message that was passed to it at a time."""
+        """Record that the socket has accepted a message that was passed to it at time `since`."""
         if self._answers or size < BULK:
             return
         while len(self._on_the_way) > _MOST_ON_THE_WAY:
@@ -269,11 +272,11 @@ class Line:
         seconds = self._clock() - since
         if seconds >= _BLOCKED:
             self._learn(size / seconds)
-        elif 2 * size >= self.room:  # it went into buffers of unknown size
+        elif 2 * size >= self.room:  # it was buffered, in buffers of unknown size
             self._learn(float("inf"))
 
     def received(self, count: int) -> None:
-        """Note how many messages the page has acknowledged."""
+        """Record the number of messages that the page has acknowledged."""
         now = self._clock()
         if not self._answers:
             self._answers = True
@@ -288,6 +291,6 @@ class Line:
                 self._learn(arrived.size / max(took - self._shortest, took / 10, 1e-4))
 
     def _learn(self, rate: float) -> None:
-        """Adopt a measured rate. A single one may be an outlier: it at most doubles or halves the rate."""
+        """Update the rate with a measurement; as it may be an outlier, it at most doubles or halves the rate."""
         known = self.room / _SHARE
         self.rate = min(max(rate, known / 2), known * 2)

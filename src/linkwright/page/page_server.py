@@ -1,4 +1,4 @@
-"""The server of a viewer as soon as it listens: it serves the page before there is a viewer."""
+"""The server of a viewer from the moment it listens: serves the page even before there is a viewer."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ class PageServer:
     """Listens at an address, with the token of its pages.
 
     Args:
-        host: the address to listen on; any but this machine's loopback address admits others who know the token.
-        port: 0 for any; None for 7448 or the next free one.
+        host: the address to listen on; any address except loopback admits other machines that know the token.
+        port: the port; 0 for any free port; None for 7448 or the next free port.
 
     Attributes:
-        host: the address that it listens on.
+        host: the address that the server listens on.
         meshes: the folders that pages may read from.
-        downloads: files that were made for pages.
-        url: the address to open in a browser, token included; empty before `open`.
-        is_open_to_others: whether other machines can reach it.
-        web: serves requests; None before `open`.
+        downloads: the files generated for pages.
+        url: the address to open in a browser, including the token; empty before `open`.
+        is_open_to_others: whether other machines can reach the server.
+        web: the server that handles requests; None before `open`.
     """
 
     def __init__(self, host: str, port: int | None) -> None:
@@ -42,7 +42,7 @@ class PageServer:
         """Listen, and serve the page; further requests wait for `show`.
 
         Raises:
-            LinkwrightError: VIEW101 to VIEW103, it cannot listen where it should.
+            LinkwrightError: VIEW101 to VIEW103, the server cannot listen at the address.
         """
         from linkwright.page.server import WebServer, is_open_to_others, listen
 
@@ -56,17 +56,17 @@ class PageServer:
         self.url = await self.web.start(listener)
 
     def show(self, audience: Audience, guests: Guests | None) -> None:
-        """Let pages in, see `WebServer.show`."""
+        """Admit pages, see `WebServer.show`."""
         if self.web is not None:
             self.web.show(audience, guests)
 
     @property
     def pages_wait(self) -> bool:
-        """Whether pages of the former program at this port are looking for this one."""
+        """Whether pages of the former program at this port are waiting to reconnect."""
         return self._port_token is not None and self._port_token[1].pages_wait
 
     def leave_token(self, *, pages_wait: bool) -> None:
-        """Store at the end of the program whether its pages wait for the next one."""
+        """Store, when the program ends, whether its pages wait for the next one."""
         if self._port_token is not None:
             (port, port_token), self._port_token = self._port_token, None
             leave_token(port, port_token.token, pages_wait=pages_wait)

@@ -1,4 +1,4 @@
-"""The web server: its listening socket, the page, its WebSocket, and the files that the page fetches."""
+"""The web server: its listening socket, the page, its WebSocket, and the files that the page downloads."""
 
 from __future__ import annotations
 
@@ -88,9 +88,9 @@ _NOT_SENT_LOW_WATER: int | None = getattr(socket, "TCP_NOTSENT_LOWAT", None)
 
 @dataclass(slots=True)
 class _Shown:
-    """The services for pages: the audience that takes their sockets, and the guests that show their recordings.
+    """The services for pages: the audience that takes their WebSockets, and the guests that show their recordings.
 
-    The addresses for uploads exist since the first one.
+    `uploads` is created by the first upload request.
     """
 
     audience: Audience
@@ -99,13 +99,13 @@ class _Shown:
 
 
 class WebServer:
-    """Serves one viewer, and before there is one the files of the page.
+    """Serves one viewer, and the files of the page before there is a viewer.
 
     Args:
         gate: checks requests.
         meshes: the folders that may be read.
         downloads: files that were made for pages.
-        page_folder: the built page.
+        page_folder: the folder of the built page.
     """
 
     def __init__(self, gate: Gate, meshes: MeshFolders, downloads: Downloads, page_folder: Path = PAGE_FOLDER) -> None:
@@ -121,7 +121,10 @@ class WebServer:
         self._reading = asyncio.Lock()
 
     async def start(self, listener: socket.socket) -> str:
-        """Serve on a listening socket, which is closed if this fails; returns the address to open, token included."""
+        """Serve on a listening socket, and return the address to open, including the token.
+
+        The socket is closed if this fails.
+        """
         application = web.Application(middlewares=[self._guard])
         application.on_response_prepare.append(self._add_headers)
         application.router.add_get("/", self._index)
@@ -158,7 +161,7 @@ class WebServer:
         return f"{url_of(listener)}?{TOKEN_PARAMETER}={self._gate.token}"
 
     def show(self, audience: Audience, guests: Guests | None = None) -> None:
-        """Let pages in, those that wait too.
+        """Admit pages, including those that are already waiting.
 
         Args:
             audience: takes the WebSockets.
@@ -167,7 +170,7 @@ class WebServer:
         self._shown.set_result(_Shown(audience, guests))
 
     async def close(self) -> None:
-        """Close the connections to pages and stop."""
+        """Close the connections to pages, and stop serving."""
         if self._listening is not None:
             self._listening.close()
             self._listening = None
@@ -215,7 +218,7 @@ class WebServer:
         return await self._page_response(request, index, _PAGE_TYPES[".html"], "no-cache")
 
     async def _proof(self, request: web.Request) -> web.Response:
-        """Prove to a page that was let in before that this is the program that it knows."""
+        """Prove to a page that was admitted earlier that this is the program that it knows."""
         proof = self._gate.proof(request.query.get("nonce", ""))
         if proof is None:
             return web.Response(status=400, text="This address only answers the page.\n")
@@ -227,7 +230,7 @@ class WebServer:
         content_type = _PAGE_TYPES.get(Path(parts[-1]).suffix)
         if content_type is None or any(part in ("", ".", "..") or "\0" in part or "\\" in part for part in parts):
             raise web.HTTPNotFound(text="There is no such page.\n")
-        hashed = parts[0] == "assets"  # Vite derives these names from their content
+        hashed = parts[0] == "assets"  # Vite derives the names of these files from their content
         cache = "private, max-age=31536000, immutable" if hashed else "no-cache"
         file = self._page_folder / path
         packed = file.with_name(f"{file.name}.gz")
@@ -236,7 +239,8 @@ class WebServer:
         if not _takes_gzip(request):
             vary = {"Vary": "Accept-Encoding"}
             return await self._page_response(request, packed, content_type, cache, vary, unpack=True)
-        # A quarter of the bytes: over a slow line the page loads in seconds instead of tens of them.
+        # The compressed file has a quarter of the bytes: on a slow connection the page loads in seconds, not tens of
+        # seconds.
         packing = {"Content-Encoding": "gzip", "Vary": "Accept-Encoding"}
         return await self._page_response(request, packed, content_type, cache, packing)
 
@@ -250,7 +254,7 @@ class WebServer:
         *,
         unpack: bool = False,
     ) -> web.StreamResponse:
-        """Return a file of the page. It is in memory once for all requests, however slow their readers are."""
+        """Send a file of the page. All requests share one copy in memory, however slow their readers are."""
         async with self._reading:
             cached = self._page_contents.get((path, unpack))
             try:
@@ -280,7 +284,7 @@ class WebServer:
             return web.Response(status=error.status, text=f"Refused: {error}.\n")
         self._admit(request)
         content_type = CONTENT_TYPES[path.suffix.lower()]
-        packs = _takes_gzip(request) and path.suffix.lower() not in IMAGE_TYPES  # images are compressed already
+        packs = _takes_gzip(request) and path.suffix.lower() not in IMAGE_TYPES  # images are already compressed
         return await _file_response(request, path, content_type, "private, no-cache", packs=packs)
 
     async def _export(self, request: web.Request) -> web.StreamResponse:
@@ -309,16 +313,16 @@ class WebServer:
         return await take(shown.uploads, request)
 
     async def _viewer(self) -> _Shown:
-        """Return the services for pages, as soon as they are available."""
+        """Wait until the services for pages are available, and return them."""
         try:
             return await asyncio.shield(self._shown)
         except asyncio.CancelledError:
             if not self._shown.cancelled():
-                raise  # the request is gone
+                raise  # the client has cancelled the request
             raise web.HTTPServiceUnavailable(text="The program ends.\n") from None
 
     async def _show_kept(self, uploads: Uploads, request: web.Request) -> web.Response:
-        """Show a recording that this program made: its file is on this machine already."""
+        """Show a recording that this program made, whose file is already on this machine."""
         recording = self._downloads.path(request.match_info["key"])
         if recording is None:
             raise web.HTTPNotFound(text="There is no such recording.\n")
@@ -327,7 +331,7 @@ class WebServer:
     def _shielded(
         self, handler: Callable[[web.Request], Awaitable[web.Response]]
     ) -> Callable[[web.Request], Awaitable[web.StreamResponse]]:
-        """Return a handler that refuses requests without the token."""
+        """Wrap a handler so that it refuses requests without the token."""
 
         async def asked(request: web.Request) -> web.StreamResponse:
             return await handler(request) if self._gate.is_shown_token(request.query) else _without_token()
@@ -371,14 +375,17 @@ _UPLOADS: tuple[tuple[str, str, Callable[[Uploads, web.Request], Awaitable[web.R
 
 
 def _audience_of(shown: _Shown, request: web.Request) -> Audience:
-    """Return the pages of the recording that a page names, or those of the viewer if it is no longer shown."""
+    """Return the pages of the recording that a request names.
+
+    If the recording is no longer shown, the pages of the viewer are returned.
+    """
     key = request.query.get("recording", "")
     found = None if shown.guests is None or not key else shown.guests.audience(key)
     return shown.audience if found is None else found
 
 
 def _is_from_here(request: web.Request) -> bool:
-    """Return whether a request comes from this machine: by its loopback, or from its own address."""
+    """Return whether a request is from this machine: over loopback, or from its own address."""
     transport = request.transport
     peer, own = (transport and transport.get_extra_info(name) for name in ("peername", "sockname"))
     if not peer or not own:
@@ -389,7 +396,7 @@ def _is_from_here(request: web.Request) -> bool:
 
 
 def _own_displays(request: web.Request) -> str:
-    """Return a page's name for its own displays, from the address of its socket; empty for the common ones."""
+    """Return the name in a WebSocket's address for the page's own displays; empty for the shared ones."""
     key = request.query.get("own", "")
     return key if _OWN_KEY.fullmatch(key) else ""
 
@@ -404,7 +411,7 @@ def _without_token() -> web.Response:
 
 
 def _refused(status: int, reason: str) -> web.Response:
-    """Return an answer that ends its connection."""
+    """Return an error response that closes its connection."""
     response = web.Response(status=status, text=f"{reason[0].upper()}{reason[1:]}.\n")
     response.force_close()
     return response
@@ -413,11 +420,12 @@ def _refused(status: int, reason: str) -> web.Response:
 async def _file_response(
     request: web.Request, path: Path, content_type: str, cache: str, *, packs: bool
 ) -> web.Response:
-    """Return a file, with an ETag that an edit changes; 304 if the browser has it already.
+    """Return a file with an ETag that changes with its content; 304 if the browser already has it.
 
-    With `packs` it is compressed if that makes it clearly smaller, with its uncompressed length in a header.
+    With `packs` the file is compressed if that makes it clearly smaller, with the uncompressed length in a header.
 
-    aiohttp's own FileResponse also looks for compressed files beside the one asked for, which no check covers.
+    aiohttp's own FileResponse is not used: it also looks for compressed files next to the requested one, which no check
+    covers.
     """
     try:
         read = await asyncio.to_thread(_read, path, request.headers.get("If-None-Match", ""))
@@ -443,7 +451,7 @@ def _attached(name: str) -> str:
 
 
 async def _streamed(request: web.Request, path: Path) -> web.StreamResponse:
-    """Return a file to be saved, however long it is: only a block of it is in memory at a time."""
+    """Send a file for download, however long it is: only one block at a time is in memory."""
     try:
         file = await asyncio.to_thread(path.open, "rb")
     except OSError:
@@ -467,19 +475,22 @@ def _no_file() -> web.HTTPNotFound:
 
 @dataclass(frozen=True, slots=True)
 class _FileRead:
-    """The version of a file: its ETag, its time of change (seconds), and its content."""
+    """A version of a file: its ETag, its modification time (seconds), and its content."""
 
     tag: str
     modified: float
     body: bytes | None
 
     def is_known_to(self, request: web.Request) -> bool:
-        """Return whether a browser has this version."""
+        """Return whether the browser already has this version."""
         return _is_among(self.tag, request.headers.get("If-None-Match", ""))
 
 
 def _read(path: Path, known: str, *, unpack: bool = False) -> _FileRead:
-    """Read a regular file, or its compressed form; no content if the ETag is among those of an If-None-Match."""
+    """Read a regular file, or unpack a compressed one.
+
+    The content is omitted if the ETag is in `known`, an If-None-Match header.
+    """
     descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with open(descriptor, "rb") as file:  # noqa: PTH123 - a descriptor, not a path
         facts = os.fstat(descriptor)
@@ -500,11 +511,11 @@ def listen(host: str, port: int | None) -> socket.socket:
 
     Args:
         host: a name or address of this machine.
-        port: 0 for any; None for `DEFAULT_PORT`, or the next free one if it is taken.
+        port: 0 for any; None for `DEFAULT_PORT`, or the next free one if it is in use.
 
     Raises:
-        LinkwrightError: VIEW101, the requested port is in use; VIEW102, it cannot be listened on; VIEW103, the host
-            is unknown.
+        LinkwrightError: VIEW101, the requested port is in use; VIEW102, it is not possible to listen on it; VIEW103,
+            the host is unknown.
     """
     try:
         family, _, _, _, address = socket.getaddrinfo(host, 0, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
@@ -523,7 +534,7 @@ def listen(host: str, port: int | None) -> socket.socket:
 
 
 def url_of(listener: socket.socket) -> str:
-    """Return the address at which a browser on this machine reaches a listening socket."""
+    """Return the URL at which a browser on this machine reaches a listening socket."""
     host, port = listener.getsockname()[:2]
     host = _WILDCARDS.get(host, host)
     return f"http://[{host}]:{port}/" if ":" in host else f"http://{host}:{port}/"
@@ -540,7 +551,7 @@ def _listen_at(family: int, address: tuple[str | int, int]) -> socket.socket:
         if os.name == "posix":
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind(address)
-        listener.listen(64)  # at once: two programs may both bind a port, but only one can listen
+        listener.listen(64)  # immediately: two programs may both bind a port, but only one can listen
         listener.setblocking(False)
     except (OSError, OverflowError) as error:
         listener.close()
@@ -566,12 +577,13 @@ def _cannot_listen(host: str, port: int, error: OSError) -> Diagnostic:
 
 
 def keep_short(transport: asyncio.Transport) -> None:
-    """Keep the send buffer of a connection short, without bounding the data in flight.
+    """Limit the unsent data of a connection, but not the data in flight.
 
-    Data that waits there can neither be replaced by newer data nor overtaken.
+    Unsent data in the buffer can neither be replaced by newer data nor be overtaken.
 
-    The system grows its send buffer to megabytes; over a slow line these are many seconds. Where it offers no other
-    bound (Windows), its buffer stays as it is, and pages' acknowledgements alone keep the line free.
+    The operating system lets its send buffer grow to megabytes, which take many seconds on a slow connection. Where it
+    offers no other limit (Windows), its buffer is left unchanged, and only pages' acknowledgements keep the connection
+    free.
     """
     transport.set_write_buffer_limits(high=MOST_UNSENT)
     connection = transport.get_extra_info("socket")

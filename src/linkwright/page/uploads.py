@@ -1,7 +1,7 @@
-"""Recordings that pages upload: their files arrive in blocks and go into a temporary folder.
+"""Recordings that pages upload; their files arrive in blocks and are stored in a temporary folder.
 
-A page announces the files first and learns whether there is room. Uploads that are cancelled or stall are removed.
-Every holder of the token may upload; names are checked, and none leads out of the folder.
+A page first announces the files, and learns whether there is enough space. Uploads that are cancelled or stall are
+removed. Every holder of the token may upload. File names are checked, and none can point outside the folder.
 """
 
 from __future__ import annotations
@@ -44,14 +44,16 @@ class Guests(Protocol):
     """Shows recordings to pages of this server."""
 
     async def open(self, path: Path, scratch: TemporaryDirectory[str] | None) -> str:
-        """Show a recording; returns its name for pages. `scratch`, if any, is removed when it is no longer shown.
+        """Show a recording, and return its name for pages.
+
+        `scratch`, if given, is removed when the recording is no longer shown.
 
         Raises:
-            LinkwrightError: it cannot be shown; `scratch` still exists.
+            LinkwrightError: the recording cannot be shown; `scratch` still exists.
         """
 
     def audience(self, key: str) -> Audience | None:
-        """Return the pages of a recording that is shown, or None if there is none of that name."""
+        """Return the pages that show the recording of a name; None if there is no such recording."""
 
     async def close(self) -> None:
         """Stop showing recordings."""
@@ -91,11 +93,11 @@ class _Upload:
 
 
 class Uploads:
-    """The addresses to which pages upload recordings.
+    """The handlers of requests with which pages upload recordings.
 
     Args:
-        guests: shows them.
-        left_free: bytes of the disk to leave free.
+        guests: shows the recordings.
+        left_free: the number of bytes to leave free on the disk.
     """
 
     def __init__(self, guests: Guests, left_free: int = LEFT_FREE) -> None:
@@ -113,7 +115,7 @@ class Uploads:
         self._uploads.clear()
 
     async def show(self, request: web.Request, path: Path) -> web.Response:
-        """Show a recording of this machine, which is not removed; returns the answer for the page."""
+        """Show a recording of this machine, which is not removed afterwards; return the response for the page."""
         try:
             return web.json_response({"recording": await self._guests.open(path, None)})
         except LinkwrightError as error:
@@ -122,7 +124,7 @@ class Uploads:
     # --- requests ----------------------------------------------------------------------------------------------
 
     async def announce(self, request: web.Request) -> web.Response:
-        """Answer an announcement with a key for it, or with the reason if there is no room."""
+        """Answer an announcement with a key for the upload, or with the reason if there is no space."""
         try:
             announced = msgspec.json.decode(await request.read(), type=_Announcement)
         except msgspec.DecodeError as error:
@@ -165,7 +167,7 @@ class Uploads:
         return web.json_response({"key": key})
 
     async def take(self, request: web.Request) -> web.Response:
-        """Receive one of the files."""
+        """Receive one of the announced files."""
         upload = self._uploads.get(request.match_info["key"])
         number = int(request.match_info["number"])
         if upload is None or number >= len(upload.announced.files) or number in upload.received or upload.busy:
@@ -204,14 +206,14 @@ class Uploads:
         return web.json_response({"recording": shown})
 
     async def give_up(self, request: web.Request) -> web.Response:
-        """Remove the received part of a recording."""
+        """Cancel an upload, and remove the received part of the recording."""
         self._remove(request.match_info["key"])
         return web.Response(status=204)
 
     # -----------------------------------------------------------------------------------------------------------
 
     async def _write(self, request: web.Request, upload: _Upload, path: Path, size: int) -> int:
-        """Write the body of a request, a block at a time; returns how many bytes it had."""
+        """Write the body of a request to a file block by block, and return its size in bytes."""
         loop = asyncio.get_running_loop()
         come = 0
         with await asyncio.to_thread(path.open, "wb") as file:
@@ -252,7 +254,7 @@ def _refused(request: web.Request, message: Phrase) -> web.Response:
 
 
 def _problem(text: str) -> web.Response:
-    """Return the response with an error for the user. Its status is 200, since browsers log other ones."""
+    """Return the response with an error for the user. Its status is 200, since browsers log other codes."""
     return web.json_response({"problem": text})
 
 

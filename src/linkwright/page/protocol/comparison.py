@@ -1,4 +1,4 @@
-"""Two descriptions in one scene: their differences, and the links that show them."""
+"""Two descriptions in one scene: their differences, and the links where they are shown."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ Mark = Literal["added", "removed", "changed"]
 
 
 class ComparedRobot(Record):
-    """A robot of the comparison: its RobotModel display, empty if none shows it, its name, and the links to mark."""
+    """A robot of the comparison: its RobotModel display, its name, and the links to highlight.
+
+    The display is empty if none shows the robot.
+    """
 
     display: str
     label: str
@@ -19,7 +22,7 @@ class ComparedRobot(Record):
 
 
 class ComparedPlace(Record):
-    """A place in a text, 1-based: for readers, and for the Source panel, or without a file."""
+    """A place in a text, 1-based: `path` for readers, and the file for the Source panel."""
 
     text: str
     file: str
@@ -30,8 +33,8 @@ class ComparedItem(Record):
     """A difference, as `linkwright diff` prints it.
 
     `property` is empty for a difference of the whole item; `old` and `new` are None for a value that a description does
-    not set. `element` is the link or joint that shows it, empty if there is none, and `in_old` whether only the old
-    description has that.
+    not set. `element` is the link or joint where the difference is shown, empty if there is none, and `in_old` is
+    whether only the old description has that element.
     """
 
     subject: Literal["robot", "link", "joint", "extension"]
@@ -49,10 +52,10 @@ class ComparedItem(Record):
 
 
 class ComparedDescriptions(ServerMessage):
-    """The differences of two descriptions.
+    """The differences between two descriptions.
 
-    By names in the old one: `joints` are the joints of the new one that they follow, `shapes` the links of the new one
-    that have the same shapes.
+    `joints` and `shapes` map names in the old description to names in the new one: `joints` to the joints that the old
+    ones follow, `shapes` to the links that have the same shapes.
     """
 
     old: ComparedRobot

@@ -1,4 +1,4 @@
-"""The displays, and the configuration that has them: its file, edits, undo and redo."""
+"""The displays, and the configuration that contains them: its file, edits, undo and redo."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ RowDetails = Literal["frame", "link", "joint", "effort"]
 
 
 class TopicOffer(Record):
-    """The topics offered for a row: those of one of the types, whose names contain one of the words, if any."""
+    """The topics offered for a row.
+
+    They have one of the types and, if words are given, contain one of them in their names.
+    """
 
     messages: list[str]
     words: list[str]
@@ -24,13 +27,13 @@ class TopicOffer(Record):
 class Property(Record):
     """A row of a property tree, as RViz shows it.
 
-    `id` is unique in the page and stable for the life of a display. Colours are ``#rrggbb``. A `group` has no value;
-    any other kind may have children too (``Line Style`` > ``Line Width``).
+    `id` is unique in the page and stable for the lifetime of a display. Colours are ``#rrggbb``. A `group` has no
+    value; any other kind may have children too (``Line Style`` > ``Line Width``).
 
     A row with `details` represents the frame, link or joint of its name. The page knows its current pose, so it adds
-    read-only rows of its own: RViz's ``Position``, ``Orientation`` and the like.
+    its own read-only rows: RViz's ``Position``, ``Orientation`` and the like.
 
-    A `topic` without `topics` offers those that the display can be added for.
+    A `topic` without `topics` offers the topics that the display can be added for.
     """
 
     id: str
@@ -49,7 +52,7 @@ class Property(Record):
 
 
 class StatusRow(Record):
-    """A row below a display's Status. Its text is usually a phrase, which each page gets in its language."""
+    """A row below a display's Status. Its text is usually a phrase, which each page receives in its own language."""
 
     name: str
     level: StatusLevel
@@ -57,7 +60,7 @@ class StatusRow(Record):
 
 
 class Place(Record):
-    """A place in a source file, 1-based, with the way there (macro calls and includes, innermost first)."""
+    """A place in a source file, 1-based, with the macro calls and includes that lead to it, innermost first."""
 
     file: str
     line: int
@@ -68,17 +71,19 @@ class Place(Record):
 class Display(Record):
     """A display of the Displays panel. `cls` is RViz's class, such as ``rviz_default_plugins/Grid``.
 
-    `group` is the id of the group it is in, ``rviz_common/Group``, which comes before it. `enabled` is its own box; it
-    is drawn if those of the groups around it are on too.
+    `group` is the ID of the display's group, a ``rviz_common/Group`` that precedes it. `enabled` is the display's own
+    check box; the display is drawn if the check boxes of all enclosing groups are also on.
 
-    `drawing` is the class whose drawing the page uses: its own, or for a display of another package the one it is like.
+    `drawing` is the class that determines how the page draws the display: the display's own class, or for a display of
+    another package, the class that it resembles.
 
-    `supported` is false for a class this program does not draw; it is kept and shown as such. The rows:
+    `supported` is false for a class this program does not draw; such a display is kept and listed as unsupported. Rows
+    of particular classes:
 
     - RobotModel: a shape is drawn with the alpha of its colour, times ``Alpha``, times the link's ``Alpha`` below
-      ``Links``. A link's row is a ``bool`` (draw its shapes) when it has any, else a ``group``.
-    - TF: a frame is drawn when it has a row below ``Frames`` and that is on; frames that the filters leave out have
-      none. ``Update Interval`` (seconds between updates, 0 for every frame) of both is applied by the page.
+      ``Links``. A link's row is a ``bool`` (draw its shapes) if it has any, or else a ``group``.
+    - TF: a frame is drawn if it has a row below ``Frames`` and the row is on; frames excluded by the filters have no
+      row. ``Update Interval`` (seconds between updates, 0 for every frame) of both is applied by the page.
     """
 
     id: str
@@ -94,7 +99,7 @@ class Display(Record):
 
 
 class Tree(ServerMessage):
-    """The complete Displays tree: sent at the start and when displays are added, removed or moved."""
+    """The complete tree of displays, sent at the start and when displays are added, removed or moved."""
 
     global_options: list[Property]
     global_status: list[StatusRow]
@@ -103,7 +108,7 @@ class Tree(ServerMessage):
 
 
 class DisplayProperties(ServerMessage):
-    """All property rows of one display again (the links of a new robot, the frames of TF)."""
+    """All property rows of one display, sent again when they change (the links of a new robot, the frames of TF)."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -122,7 +127,7 @@ class PropertyChanged(ServerMessage):
 
 
 class DisplayStatus(ServerMessage):
-    """The status rows of one display, or of ``global``."""
+    """The status rows of one display or of ``global``."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -144,22 +149,22 @@ Question = Literal["unsaved", "exists", "changed_on_disk"]
 
 # --- server to page ------------------------------------------------------------------------------------------------
 class EditName(Record):
-    """The edit that undo or redo would revert or repeat: its kind, and the name of the property or display."""
+    """An edit that undo would revert or redo would repeat: its kind, and the name of the property or display."""
 
     kind: EditKind
     name: str
 
 
 class Configuration(ServerMessage):
-    """The configuration that the page sees.
+    """The configuration that the page shows.
 
     Attributes:
-        path: the path of its file on the server; None when it has none yet.
-        opened: counts the configurations opened so far; when it grows, earlier messages are about another file.
-        unsaved: whether there are edits that the file lacks.
-        undo: the edit that undo would revert; None for none.
-        redo: the edit that redo would repeat; None for none.
-        own: whether the page has displays of its own.
+        path: the path of its file on the server; None if it does not have one yet.
+        opened: the number of configurations opened so far; when it increases, earlier messages are about another file.
+        unsaved: whether there are unsaved edits.
+        undo: the edit that undo would revert, or None.
+        redo: the edit that redo would repeat, or None.
+        own: whether the page has its own displays.
         recent: files opened or saved before, newest first.
     """
 
@@ -180,7 +185,7 @@ class DisplayClass(Record):
 
 
 class TopicChoice(Record):
-    """A topic of the graph, its type, and the classes of displays that show it; none when no display does."""
+    """A topic of the graph, its type, and the classes of displays that can show it, possibly none."""
 
     topic: str
     message: str
@@ -188,14 +193,14 @@ class TopicChoice(Record):
 
 
 class DisplayChoices(ServerMessage):
-    """Answers `AskDisplayChoices`: all classes of displays that can be added, and the topics of the graph."""
+    """Response to `AskDisplayChoices`: all classes of displays that can be added, and the topics of the graph."""
 
     classes: list[DisplayClass]
     topics: list[TopicChoice]
 
 
 class Folder(ServerMessage):
-    """Answers `AskFolder`: the folders and configuration files in a folder of the server, by name."""
+    """Response to `AskFolder`: the folders and configuration files in a folder of the server, by name."""
 
     path: str
     parent: str | None
@@ -204,20 +209,20 @@ class Folder(ServerMessage):
 
 
 class ConfigurationText(ServerMessage):
-    """Answers `AskConfigurationText`: the file as it would be saved now, and a name for it."""
+    """Response to `AskConfigurationText`: the text of the file as it would be saved now, and a name for it."""
 
     name: str
     text: str
 
 
 class ConfigurationSaved(ServerMessage):
-    """The configuration was saved."""
+    """A notice that the configuration was saved."""
 
     path: str
 
 
 class ConfigurationRefused(ServerMessage):
-    """A request of a page was refused. With a question, the page may confirm it and repeat the request."""
+    """The rejection of a page's request; with a question, the page may confirm it and repeat the request."""
 
     message: str
     question: Question | None
@@ -226,7 +231,7 @@ class ConfigurationRefused(ServerMessage):
 
 # --- page to server ------------------------------------------------------------------------------------------------
 class AddDisplay(PageMessage):
-    """Add a display of a class, enabled; into a group, if one is named, and showing a topic, if one is named."""
+    """Add an enabled display of a class, optionally to a group, and optionally showing a topic."""
 
     cls: str
     name: str
@@ -248,7 +253,7 @@ class RenameDisplay(PageMessage):
 
 
 class RemoveDisplays(PageMessage):
-    """Remove displays with their content."""
+    """Remove displays with their contents."""
 
     displays: list[str]
 
@@ -262,7 +267,7 @@ class MoveDisplays(PageMessage):
 
 
 class GroupDisplays(PageMessage):
-    """Put displays into a new group, in the place of the first of them."""
+    """Put displays into a new group at the position of the first of them."""
 
     displays: list[str]
     name: str
@@ -273,7 +278,7 @@ class Undo(PageMessage):
 
 
 class Redo(PageMessage):
-    """Redo the edit that was undone last."""
+    """Redo the edit that was last undone."""
 
 
 class AskDisplayChoices(PageMessage):
@@ -281,26 +286,26 @@ class AskDisplayChoices(PageMessage):
 
 
 class AskFolder(PageMessage):
-    """Ask for the contents of a folder of the server; None for that of the open file."""
+    """Ask for the contents of a folder of the server; None for the folder of the open file."""
 
     path: str | None
 
 
 class NewConfiguration(PageMessage):
-    """Start with RViz's default configuration; `discard` allows losing unsaved edits."""
+    """Open RViz's default configuration; `discard` allows losing unsaved edits."""
 
     discard: bool
 
 
 class OpenConfiguration(PageMessage):
-    """Open a file of the server; `discard` allows losing unsaved edits."""
+    """Open a file on the server; `discard` allows losing unsaved edits."""
 
     path: str
     discard: bool
 
 
 class LoadConfiguration(PageMessage):
-    """Open a file of the browser's machine: its name and text."""
+    """Open a file from the browser's machine, given its name and text."""
 
     name: str
     text: str
@@ -308,15 +313,15 @@ class LoadConfiguration(PageMessage):
 
 
 class RevertConfiguration(PageMessage):
-    """Open the file again, without the edits."""
+    """Open the file again and discard the edits."""
 
 
 class SaveConfiguration(PageMessage):
-    """Save to the file, or to another one of the server, which is the configuration's file from then on.
+    """Save to the current or another file on the server, which becomes the configuration's file.
 
     Attributes:
-        path: ends in ``.rviz``; None for the file it has.
-        replace: whether an existing file, or one that another program changed, may be replaced.
+        path: a path that ends in ``.rviz``; None for the current file.
+        replace: whether an existing file, or a file that another program changed, may be replaced.
     """
 
     path: str | None
@@ -324,7 +329,7 @@ class SaveConfiguration(PageMessage):
 
 
 class AskConfigurationText(PageMessage):
-    """Ask for the file as it would be saved now, to store it on the browser's machine."""
+    """Ask for the text of the file as it would be saved now, to store it on the browser's machine."""
 
 
 PanelName = Literal["displays", "selection", "tool-properties", "views", "time", "transformation", "navigation"]
@@ -335,7 +340,8 @@ class Panels(ServerMessage):
     """The panels in the configuration.
 
     Attributes:
-        opened: counts the configurations of this page's displays: with another number the page shows these panels.
+        opened: the number of configurations opened for this page's displays; when it changes, the page shows these
+            panels.
         origin: the name under which a page remembers a configuration that has no file.
         shown: the panels that are open, in the order of the file; None if the file does not list panels.
     """
@@ -346,6 +352,6 @@ class Panels(ServerMessage):
 
 
 class ShowPanels(PageMessage):
-    """The user opened or closed one of these panels; the file stores the open ones."""
+    """The user opened or closed a panel; the file stores the list of open panels."""
 
     shown: list[PanelName]

@@ -1,6 +1,6 @@
-"""The description: what is known about its parts, and the arguments that it needs.
+"""The description: information about its parts, and the arguments that it needs.
 
-A page asks for the parts that it shows. `DescriptionChanged` notifies every page of a new description.
+A page requests the parts that it shows. `DescriptionChanged` notifies every page of a new description.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ NOTHING_ASKED = ArgumentForm(file="", names=[], values={}, choices=[])
 
 
 class GiveArguments(PageMessage):
-    """The user gives values to arguments of the form."""
+    """The user sets values for arguments of the form."""
 
     values: dict[str, str]
 
 
 class CallSite(Record):
-    """A call of a macro, or, without a macro, an include of a file; 1-based."""
+    """A call of a macro or, if the macro is empty, an include of a file; 1-based."""
 
     macro: str | None
     file: str
@@ -45,7 +45,7 @@ class CallSite(Record):
 
 
 class SourceRange(Record):
-    """Characters of a text, from 1, the end exclusive; `file` is empty for the expanded description."""
+    """A range of characters in a text, 1-based, with exclusive end; `file` is empty for the expanded description."""
 
     file: str
     line: int
@@ -55,10 +55,10 @@ class SourceRange(Record):
 
 
 class Written(Record):
-    """The place of an element: in the expanded text, and in its file, with the calls between them.
+    """Where an element is written: in the expanded text, and in its file, with the calls in between.
 
-    `origin` is None where only the expanded text is known. `calls` has macro calls and includes, innermost first;
-    the outermost of very many are left out.
+    `origin` is None if only the place in the expanded text is known. `calls` lists macro calls and includes, innermost
+    first; if there are very many, the outermost ones are omitted.
     """
 
     expanded: SourceRange | None
@@ -67,10 +67,10 @@ class Written(Record):
 
 
 class LinkInertia(Record):
-    """Mass in kg and centre of mass in the link's frame, m.
+    """A link's mass in kg and centre of mass in the link's frame, m.
 
-    `box` has the edges, m, of the uniform box of the same inertia, with the orientation `quaternion` in the link; it is
-    empty if no body can have this inertia.
+    `box` has the edge lengths, m, of the uniform box with the same inertia, and `quaternion` is the box's orientation
+    in the link. `box` is empty if no body can have this inertia.
     """
 
     mass: float
@@ -80,7 +80,7 @@ class LinkInertia(Record):
 
 
 class LinkDetails(Record):
-    """A link as described; `frame` is its name in tf."""
+    """A link as described; `frame` is the name of its frame in tf."""
 
     name: str
     frame: str
@@ -90,7 +90,7 @@ class LinkDetails(Record):
 
 
 class JointMimic(Record):
-    """Position = multiplier * position of `joint` + offset."""
+    """The mimic relation of a joint: position = multiplier * position of `joint` + offset."""
 
     joint: str
     multiplier: float
@@ -98,9 +98,9 @@ class JointMimic(Record):
 
 
 class JointDetails(Record):
-    """A joint as described: the origin in the parent's frame, the unit axis in the joint's frame; SI units.
+    """A joint as described: its origin in the parent's frame, its unit axis in the joint's frame; SI units.
 
-    A value that is not set, or is not a finite number, is None.
+    A value that is not set or not finite is None.
     """
 
     name: str
@@ -126,9 +126,9 @@ class JointDetails(Record):
 
 
 class Description(ServerMessage):
-    """The description of the robot of a RobotModel display; answers `AskDescription`.
+    """The description of the robot of a RobotModel display; response to `AskDescription`.
 
-    Links are in the order of the file. `files` are the files that the description was made from, the main one first.
+    Links are in file order. `files` are the files that the description was generated from, the main file first.
     """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
@@ -143,7 +143,7 @@ class Description(ServerMessage):
 
 
 class DescriptionChanged(ServerMessage):
-    """A display shows another description now; lists the links and joints that differ."""
+    """A notice that a display shows a new description; lists the links and joints that differ."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -154,7 +154,7 @@ class DescriptionChanged(ServerMessage):
 
 
 class DescriptionText(ServerMessage):
-    """A text of a description, or the expanded one if `file` is empty; None for a file that is not part of it."""
+    """The text of a file of a description, or the expanded text if `file` is empty; None for an unrelated file."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display", "file")
 
@@ -165,7 +165,7 @@ class DescriptionText(ServerMessage):
 
 
 class InertiaFinding(Record):
-    """An implausible mass or inertia of a link."""
+    """A finding about an implausible mass or inertia of a link."""
 
     link: str
     code: str
@@ -174,7 +174,7 @@ class InertiaFinding(Record):
 
 
 class InertiaFindings(ServerMessage):
-    """All implausible masses of a robot; answers `AskInertia`."""
+    """All implausible masses and inertias of a robot; response to `AskInertia`."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -190,9 +190,9 @@ class AskDescription(PageMessage):
 
 
 class AskDescriptionText(PageMessage):
-    """The page shows a text of a description; an empty `file` is the expanded one.
+    """The page shows a text of a description; an empty `file` means the expanded text.
 
-    `display` may be empty: then `file` is one that a diagnostic is about.
+    If `display` is empty, `file` is a file that a diagnostic refers to.
     """
 
     display: str
@@ -215,7 +215,7 @@ class DiagnosticNote(Record):
 
 
 class DiagnosticItem(Record):
-    """A diagnostic for the page; `excerpt` is the source line, if there is one."""
+    """A diagnostic for the page; `excerpt` is the source line if available."""
 
     code: str
     severity: Literal["error", "warning", "info"]
@@ -231,6 +231,6 @@ class DiagnosticItem(Record):
 
 
 class Diagnostics(ServerMessage):
-    """The current findings on the description; an empty list clears them."""
+    """The current findings about the description; an empty list clears them."""
 
     items: list[DiagnosticItem]

@@ -1,4 +1,4 @@
-"""Content of the displays of vision_msgs."""
+"""Content of the displays for vision_msgs."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from linkwright.page.protocol.message import Bytes, DataContent, Floats
 class SolidBoxes(DataContent):
     """Detection3D, BoundingBox3D and their arrays: boxes in the frame of the content.
 
-    `poses` has shape (N, 7), x y z (metres) qx qy qz qw of the middles; `sizes` (N, 3), metres; `colors` (N, 3), red,
-    green and blue; `scores` (N,), 0 to 1, and -1 where there is none; `names` those of the classes.
+    `poses` has shape (N, 7), x y z (metres) qx qy qz qw of the box centres; `sizes` (N, 3), metres; `colors` (N, 3),
+    RGB; `scores` (N,), 0 to 1, and -1 if unknown; `names` contains the class names.
     """
 
     poses: Floats
@@ -22,10 +22,10 @@ class SolidBoxes(DataContent):
 class ImageBoxes(DataContent):
     """Detection2DArray: boxes over an image.
 
-    `boxes` has shape (N, 5): x y of the middle, width and height in pixels of the image, and the rotation of the box,
-    radians clockwise. The rest is as in `SolidBoxes`.
+    `boxes` has shape (N, 5): x and y of the centre, width and height in pixels of the image, and the rotation of the
+    box in radians clockwise. The other fields are as in `SolidBoxes`.
 
-    `of_image` is whether the boxes were detected in the image with the stamp of the content; else they are drawn over
+    `of_image` is whether the boxes were detected in the image with the content's stamp; otherwise they are drawn over
     the current image.
     """
 

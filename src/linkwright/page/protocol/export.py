@@ -16,9 +16,9 @@ class AskExport(PageMessage):
 
 
 class ExportReady(ServerMessage):
-    """The file can be fetched once, from an address of the server; answers `AskExport`.
+    """The address of the exported file, which can be fetched once; response to `AskExport`.
 
-    `outside` are the paths of included files that are neither in a package nor below the description's folder.
+    `outside` lists the paths of included files that are neither in a package nor below the description's folder.
     """
 
     url: str
@@ -27,6 +27,6 @@ class ExportReady(ServerMessage):
 
 
 class ExportFailed(ServerMessage):
-    """The file could not be made; answers `AskExport`."""
+    """The reason why an export failed; response to `AskExport`."""
 
     message: str

@@ -1,4 +1,4 @@
-"""Content of the displays of points, poses, paths and other small data."""
+"""Content of the displays for points, poses, paths and other small data."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ class PointMarks(DataContent):
 class PoseMarks(DataContent):
     """Pose, PoseArray, PoseWithCovariance, Odometry and Path: poses in the frame of the content.
 
-    `poses` has shape (N, 7): x, y, z, qx, qy, qz, qw. `covariances` has shape (N, 36), row by row over x, y, z and the
-    rotations about them, or (0,).
+    `poses` has shape (N, 7): x, y, z, qx, qy, qz, qw. `covariances` has shape (N, 36), the rows of the 6 x 6 matrix
+    over x, y, z and the rotations about them; (0,) without covariances.
     """
 
     poses: Floats
@@ -36,10 +36,10 @@ class PolygonLine(DataContent):
 
 
 class GridSurface(DataContent):
-    """GridMap: the middles of cells in the frame of the content, row by row.
+    """GridMap: the centres of the cells in the frame of the content, row by row.
 
-    `points` has shape (rows * columns, 3); `colors` (rows * columns, 4): red, green, blue, and 0 for a missing cell.
-    The surface is drawn where it is `filled`; otherwise only lines are.
+    `points` has shape (rows * columns, 3); `colors` (rows * columns, 4): red, green, blue, and 0 for a missing cell. If
+    `filled`, the surface is drawn; otherwise only lines are drawn.
     """
 
     rows: int
@@ -50,7 +50,7 @@ class GridSurface(DataContent):
 
 
 class RangeCone(DataContent):
-    """Range: a cone along x of the frame of the content, metres and radians; no cone if `range` is 0."""
+    """Range: a cone along x in the frame of the content, metres and radians; no cone if `range` is 0."""
 
     range: float
     field_of_view: float
@@ -64,10 +64,10 @@ class Screw(DataContent):
 
 
 class EffortRings(DataContent):
-    """Effort: a ring about each joint.
+    """Effort: a ring around each joint.
 
-    `poses` has shape (N, 7), in the Fixed Frame, with z along the joint's axis; `efforts` and `limits` are in N m, of
-    shape (N,).
+    `poses` has shape (N, 7), in the Fixed Frame, with z along the joint's axis. `efforts` and `limits` are in N m and
+    have shape (N,).
     """
 
     joints: list[str]

@@ -1,4 +1,4 @@
-"""Content of the displays of images and of maps."""
+"""Content of the displays for images and maps."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from linkwright.page.protocol.message import Bytes, DataContent, PageMessage, Re
 class CameraModel(Record):
     """The pinhole camera of an image, from the projection matrix of its CameraInfo.
 
-    Sizes, focal lengths and the principal point are pixels; `offset_x` and `offset_y` are the camera's distance from
-    the frame of the image, in metres right and down.
+    Sizes, focal lengths and the principal point are in pixels. `offset_x` and `offset_y` are the camera's distance from
+    the frame of the image, in metres to the right and down.
     """
 
     width: float
@@ -27,9 +27,9 @@ class CameraModel(Record):
 class ImageFrame(DataContent):
     """Image and Camera: one image.
 
-    `width` and `height` are those of the message; `columns` and `rows` those of the data, which may be smaller.
-    The data are 8-bit pixels row by row, or a file that browsers read. `quality` is that of the WebP (1 to 95) which
-    was made of the image for a slow line, else 0.
+    `width` and `height` are those of the message; `columns` and `rows` are the size of the data, which may be smaller.
+    The data contains 8-bit pixels row by row, or a file that browsers can read. `quality` is the quality (1 to 95) of a
+    WebP file that was made from the image for a slow connection, or else 0.
     """
 
     width: int
@@ -43,7 +43,7 @@ class ImageFrame(DataContent):
 
 
 class ImageSize(PageMessage):
-    """The size of an Image display's panel in pixels, 0 while it is hidden; larger images are not needed."""
+    """The size of an Image display's panel in pixels, 0 while it is hidden; larger images need not be sent."""
 
     display: str
     width: int
@@ -51,7 +51,7 @@ class ImageSize(PageMessage):
 
 
 class OccupancyMap(DataContent):
-    """Map: the cells row by row from the origin's corner, each the byte of its int8 value.
+    """Map: the cells row by row from the origin's corner, each as the byte of its int8 value.
 
     `origin` is the pose of that corner in the frame of the message: x y z (metres) qx qy qz qw.
     """

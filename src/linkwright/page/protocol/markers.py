@@ -25,9 +25,9 @@ MarkerKind = Literal[
 
 
 class MarkerMesh(Record):
-    """The file of a mesh marker: an address, or the bytes that came with the message.
+    """The file of a mesh marker: an address, or the bytes contained in the message.
 
-    `embedded` is whether its own materials are used, tinted by the marker's colour.
+    `embedded` is whether the mesh's own materials are used, tinted by the marker's colour.
     """
 
     format: str
@@ -37,11 +37,11 @@ class MarkerMesh(Record):
 
 
 class MarkerShape(Record):
-    """A marker, as visualization_msgs/msg/Marker has it.
+    """A marker with the fields of visualization_msgs/msg/Marker.
 
-    `id` is ``<namespace>/<number>``. `pose` (x y z qx qy qz qw) is in the Fixed Frame, or, when `frame` is not empty,
-    in that frame, which it follows. `scale` is x, y, z; `color` red, green, blue, alpha. `points` has shape (N, 3),
-    `colors` (N, 4) or none, `uvs` (N, 2) or none. `texture` is an address of an image.
+    `id` is ``<namespace>/<number>``. `pose` (x y z qx qy qz qw) is in the Fixed Frame or, if `frame` is not empty, in
+    that frame, which the marker follows. `scale` is x, y, z; `color` is RGBA. `points` has shape (N, 3), `colors` (N,
+    4) or is empty, `uvs` (N, 2) or is empty. `texture` is the address of an image.
     """
 
     id: str
@@ -60,9 +60,9 @@ class MarkerShape(Record):
 
 
 class MarkersChanged(DataContent):
-    """Marker and MarkerArray: new and changed markers, and the ids of removed ones.
+    """Marker and MarkerArray: new and changed markers, and the IDs of removed markers.
 
-    With `everything` set, all earlier markers are removed.
+    If `everything` is set, all earlier markers are removed.
     """
 
     everything: bool
@@ -92,7 +92,7 @@ class InteractiveControl(Record):
     """A handle of an interactive marker.
 
     Its axis is the x axis of `orientation` (x y z w, in the frame that the orientation mode selects). The poses of
-    `markers` are in the frame of the control, or in that of the interactive marker when `independent_orientation`.
+    `markers` are in the frame of the control, or in the frame of the interactive marker if `independent_orientation`.
     """
 
     name: str
@@ -106,7 +106,7 @@ class InteractiveControl(Record):
 
 
 class MarkerMenuEntry(Record):
-    """An entry of a marker's menu; `parent` is 0 at the top."""
+    """An entry of a marker's menu; `parent` is 0 for a top-level entry."""
 
     id: int
     parent: int
@@ -125,7 +125,7 @@ class InteractiveMarkerShape(DataContent, tag="interactive_marker"):
 
 
 class InteractiveMarkerMoved(DataContent):
-    """An interactive marker has another pose in the frame of the content."""
+    """The new pose of an interactive marker in the frame of the content."""
 
     name: str
     pose: list[float]
@@ -134,7 +134,7 @@ class InteractiveMarkerMoved(DataContent):
 class MarkerFeedback(PageMessage):
     """The user acted on an interactive marker; poses and points are in the marker's frame.
 
-    `mouse_point` is the point of the marker under the mouse, or none.
+    `mouse_point` is the point of the marker under the mouse, or empty.
     """
 
     display: str

@@ -1,14 +1,15 @@
-"""The base classes of messages, and their encoding: text, and binary frames.
+"""The base classes of messages, and their encoding as text and binary frames.
 
-To define a message is to register it: the codec and the page's types follow. All messages of pages are validated.
-The module of a message that few pages send can be imported with the first one, see `define_later`.
+Defining a message registers it, and its codec and the page's types are derived from it. All messages from pages are
+validated. The module of a message that few pages send can be imported when the first one arrives, see `define_later`.
 
-Binary frames to pages, little endian: transforms, content with large arrays, and pieces of these.
+Binary frames to pages are little endian: transforms, content with large arrays, and chunks of these.
 
-Content is what displays draw of the messages they take. Its frame is four uint32 (kind 2, bytes of the header, 0, 0),
-the header as JSON in UTF-8, and the arrays; the header and each array are padded to a multiple of 8 bytes. The header
-is ``{"display", "key", "frame", "stamp", "pose", "content"}``; where the content has an array the JSON has ``{"$":
-[type, offset, count]}``: the type is ``f4`` or ``u1``, and the offset counts bytes from the end of the padded header.
+Content is what displays draw for the messages that they process. Its frame is four uint32 (kind 2, bytes of the header,
+0, 0), the header as JSON in UTF-8, and the arrays; the header and each array are padded to a multiple of 8 bytes. The
+header is ``{"display", "key", "frame", "stamp", "pose", "content"}``. An array in the content is represented in the
+JSON by ``{"$": [type, offset, count]}``: the type is ``f4`` or ``u1``, and the offset counts bytes from the end of the
+padded header.
 """
 
 from __future__ import annotations
@@ -30,12 +31,12 @@ from linkwright.diagnostics.translation import translate_phrase
 
 
 def _tag(name: str) -> str:
-    """Return the name of a class in JSON: ``SetJoint`` is ``set_joint``."""
+    """Return the tag of a class in JSON: ``SetJoint`` is ``set_joint``."""
     return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
 
 
 class Record(Struct):
-    """A part of messages."""
+    """A structured part of a message."""
 
 
 class ServerMessage(Struct, tag_field="type", tag=_tag):
@@ -47,24 +48,24 @@ class ServerMessage(Struct, tag_field="type", tag=_tag):
 
 
 class PageMessage(Struct, tag_field="type", tag=_tag, forbid_unknown_fields=True):
-    """A message from a page to the server. It is validated: a missing, unknown or mistyped field is refused."""
+    """A message from a page to the server; messages with missing, unknown or mistyped fields are rejected."""
 
 
 class DataContent(Struct, tag_field="kind", tag=_tag):
-    """The content of a display with large arrays, of `pack_data`."""
+    """A display's content with large arrays, packed by `pack_data`."""
 
 
 def tag_of(message: Struct) -> str:
-    """Return the name of a message's class in JSON."""
+    """Return the tag of a message's class in JSON."""
     return str(message.__struct_config__.tag)
 
 
 class BadMessageError(ValueError):
-    """A page sent data that is not a message of the protocol; the text gives the reason."""
+    """Raised when a page sent data that is not a message of the protocol; the text gives the reason."""
 
 
 def plain(value: Any) -> Any:
-    """Return the plain text or number of a derived class, such as those of numpy, for JSON."""
+    """Return a value of a derived class, such as numpy's, as a plain string or number for JSON."""
     if isinstance(value, str):
         return str.__str__(value)
     if isinstance(value, float):
@@ -75,11 +76,11 @@ def plain(value: Any) -> Any:
 
 
 def encode(message: ServerMessage, language: str | None = None) -> str:
-    """Return a message as JSON. Half characters of names that are not in UTF-8 become question marks.
+    """Return a message as JSON; surrogates in names that are not in UTF-8 become question marks.
 
     Args:
         message: the message.
-        language: the language of its phrases; None leaves them as they are.
+        language: the language of its phrases; None to leave them untranslated.
     """
     try:
         return _encoder(language).encode(message).decode()
@@ -95,7 +96,7 @@ def _encoder(language: str | None) -> msgspec.json.Encoder:
 
 
 def _plain_or_localized(value: Any, language: str | None) -> Any:
-    """Return a phrase in the language, or another value as `plain` has it."""
+    """Return a phrase in the language, or any other value as converted by `plain`."""
     return plain(translate_phrase(value, language) if language is not None and isinstance(value, Phrase) else value)
 
 
@@ -108,7 +109,7 @@ def decode(text: str) -> PageMessage:
     """Return the message that a page sent.
 
     Raises:
-        BadMessageError: it is not JSON, its type is unknown, or its fields are not exactly those of the type.
+        BadMessageError: it is not JSON, its type is unknown, or its fields do not match the type exactly.
     """
     try:
         try:
@@ -128,11 +129,11 @@ def _decoded(text: str) -> PageMessage:
 
 @lru_cache(maxsize=1)
 def _decoder(_known: int) -> msgspec.json.Decoder[Any]:
-    """Return the decoder of all messages defined so far; a new one after a feature defined more."""
+    """Return a decoder for all messages defined so far; cached until more messages are defined."""
     by_tag: dict[str, type[PageMessage]] = {}
     for cls in PageMessage.__subclasses__():
         tag = str(cls.__struct_config__.tag)
-        if by_tag.get(tag, cls).__module__ == cls.__module__:  # another package cannot take the name of a message
+        if by_tag.get(tag, cls).__module__ == cls.__module__:  # another package cannot take over the name of a message
             by_tag[tag] = cls
     return msgspec.json.Decoder(Union[tuple(by_tag.values())])  # noqa: UP007  # made of a tuple
 
@@ -142,28 +143,28 @@ _LATER: dict[str, str] = {}
 
 
 class _Head(Struct):
-    """The part of a message that names its class."""
+    """The field of a message that identifies its class."""
 
     type: str
 
 
 def address_of(message: type) -> str:
-    """Return the address of a class of messages, as ``module:class``."""
+    """Return the address of a message class, as ``module:class``."""
     return f"{message.__module__}:{message.__qualname__}"
 
 
 def define_later(address: str) -> None:
-    """Import the module of a `PageMessage` when the first page sends one.
+    """Register a `PageMessage` whose module is imported when the first page sends one.
 
     Args:
-        address: the address of its class, as ``module:class``.
+        address: the address of the message class, as ``module:class``.
     """
     module, _, name = address.partition(":")
     _LATER.setdefault(_tag(name), module)
 
 
 def _define(text: str) -> bool:
-    """Define the message that a page sent; False if it is defined, or unknown."""
+    """Import the class of a message from a page; return False if it is already defined or unknown."""
     module = _LATER.pop(msgspec.json.decode(text, type=_Head).type, None)
     if module is None:
         return False
@@ -176,7 +177,7 @@ PROTOCOL_VERSION = 5
 
 
 class Hello(ServerMessage):
-    """First message on every connection; `run` changes when the program is started again."""
+    """The first message on every connection; `run` changes when the program is started again."""
 
     protocol: int
     version: str
@@ -185,13 +186,13 @@ class Hello(ServerMessage):
 
 
 class ProgramIsLate(ServerMessage):
-    """Whether this program's own delays, and not the line, are most of the time that answers of the page take."""
+    """Whether delays of this program, and not of the connection, dominate the page's response time."""
 
     late: bool
 
 
 class Received(PageMessage):
-    """Acknowledges the number of messages that the page has received, after the first one and after each large one."""
+    """The number of messages that the page has received, sent after the first and after each large message."""
 
     count: int
 
@@ -201,7 +202,7 @@ TRANSFORMS_KIND = 1
 
 
 class FrameTable(ServerMessage):
-    """Names and parents (index, -1 for a root) of the frames in the binary frames with this revision."""
+    """The names and parents (index, -1 for a root) of the frames in binary frames with this revision."""
 
     revision: int
     names: list[str]
@@ -212,14 +213,14 @@ def pack_transforms(revision: int, stamp: float, poses: NDArray[Any], ages: NDAr
     """Return a binary frame of transforms: header, poses, ages, little endian.
 
     The header is four uint32 (kind 1, revision of the frame table, number of frames N, 0) and a float64 stamp in
-    seconds; then float32 N x 7 (x y z qx qy qz qw in the fixed frame, NaN where there is no transform) and float32 N
+    seconds; then float32 N x 7 (x y z qx qy qz qw in the fixed frame, NaN where there is no transform) and N float32
     (seconds since each frame's last transform; 0 for static frames).
 
     Args:
         revision: the revision of the `FrameTable` that names the rows.
-        stamp: time of the newest transform in it, seconds.
-        poses: array, shape (N, 7).
-        ages: array, shape (N,).
+        stamp: the time of the newest transform, seconds.
+        poses: the poses, shape (N, 7).
+        ages: the ages, shape (N,).
 
     Raises:
         ValueError: when the shapes do not agree.
@@ -232,7 +233,7 @@ def pack_transforms(revision: int, stamp: float, poses: NDArray[Any], ages: NDAr
 
 
 def unpack_transforms(frame: bytes) -> tuple[int, NDArray[np.float64]]:
-    """Return revision and poses, shape (N, 7), of a frame of `pack_transforms`; revision -1 for other frames."""
+    """Return the revision and the poses, shape (N, 7), of a `pack_transforms` frame; revision -1 for others."""
     if len(frame) < _TRANSFORMS_HEADER.size or _TRANSFORMS_HEADER.unpack_from(frame)[0] != TRANSFORMS_KIND:
         return -1, np.empty((0, 7))
     _, revision, count, _, _ = _TRANSFORMS_HEADER.unpack_from(frame)
@@ -256,7 +257,7 @@ _EMPTY: dict[str, dict[str, list[Any]]] = {kind: {"$": [name, 0, 0]} for kind, (
 
 
 class DisplayForgotten(ServerMessage):
-    """Remove a display's content: that with a key, or all of it."""
+    """Remove a display's content: the content with a key, or all of it."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display", "key")
 
@@ -276,12 +277,12 @@ def pack_data(
     """Return a binary frame with a display's content.
 
     Args:
-        display: its id.
+        display: the display's ID.
         content: a dataclass of `DataContent`.
-        key: the key of this content among several of the display; a newer one with the key replaces it.
+        key: the key of this content among the display's contents; newer content with the same key replaces it.
         frame: the frame that the content is in; empty for the Fixed Frame.
-        pose: x, y, z, qx, qy, qz, qw of that frame in the Fixed Frame when the content was true; None when it is to
-            follow the frame wherever it goes.
+        pose: the pose of that frame in the Fixed Frame at the time of the content, x, y, z, qx, qy, qz, qw; None if the
+            content follows the frame.
         stamp: the time of the content, seconds.
     """
     arrays = _Arrays()
@@ -299,10 +300,10 @@ def pack_data(
 
 
 class _Arrays:
-    """The arrays of a frame, one after the other.
+    """The concatenated arrays of a frame.
 
     Attributes:
-        parts: their bytes and the padding.
+        parts: the bytes of the arrays and the padding.
     """
 
     def __init__(self) -> None:
@@ -310,16 +311,16 @@ class _Arrays:
         self._length = 0
 
     def clear(self) -> None:
-        """Forget all arrays."""
+        """Remove all arrays."""
         self.parts.clear()
         self._length = 0
 
     def put_aside(self, value: Any) -> Any:
-        """Add an array and return its placeholder in the header; other values become plain ones."""
+        """Add an array and return its placeholder in the header; other values are converted to plain ones."""
         return self.put(value) if isinstance(value, np.ndarray) else plain(value)
 
     def put(self, array: NDArray[Any]) -> dict[str, list[Any]]:
-        """Add an array; returns its placeholder in the header."""
+        """Add an array and return its placeholder in the header."""
         if array.size == 0:
             return _EMPTY[array.dtype.kind]
         name, wire = _TYPES[array.dtype.kind]
@@ -332,7 +333,7 @@ class _Arrays:
 
 
 def _json(header: dict[str, Any], arrays: _Arrays) -> bytes:
-    """Return the header, without its arrays; half characters, as names of files may have, become question marks."""
+    """Return the header as JSON; surrogates, which file names may contain, become question marks."""
     try:
         return msgspec.json.encode(header, enc_hook=arrays.put_aside)
     except UnicodeEncodeError:
@@ -349,15 +350,16 @@ PIECE_KIND = 4
 
 
 def pack_piece(frame: bytes, number: int, offset: int, size: int) -> bytes:
-    """Return a binary frame with a part of another.
+    """Return a binary frame with a chunk of another frame.
 
-    It is four uint32, little endian (kind 4, number, offset, length of the whole frame), and the bytes from the offset
-    on. The page takes the whole frame as received when it has the last piece; a piece with the offset 0 begins another.
+    The chunk is four uint32, little endian (kind 4, number, offset, length of the whole frame), and the bytes from the
+    offset on. The page processes the whole frame when it has received the last chunk; a chunk with offset 0 begins
+    another frame.
 
     Args:
         frame: the complete frame.
-        number: the same for all pieces of the frame, and another for those of the next.
-        offset: the offset of the piece, bytes.
-        size: the largest size of the piece, bytes.
+        number: a number shared by all chunks of the frame, and different for the next frame.
+        offset: the offset of the chunk, bytes.
+        size: the maximum size of the chunk, bytes.
     """
     return _HEADER.pack(PIECE_KIND, number, offset, len(frame)) + frame[offset : offset + size]

@@ -1,10 +1,10 @@
 """The live panels: topics, plots, the node graph, parameters, the log and the teleop pad.
 
-A frame of a plot's samples is four uint32 (kind 3, number of series N, 0, 0); then for each series two uint32 (its id,
-number of samples M) and float64 3 x M: when each was received and the stamp of its header, both in seconds since the
-epoch (NaN where there is no header), and the values. All is little endian.
+A frame of a plot's samples is four uint32 (kind 3, number of series N, 0, 0); then for each series two uint32 (its ID,
+number of samples M) and 3 x M float64: the times of reception and the header stamps, both in seconds since the epoch
+(NaN without a header), and the values. Everything is little endian.
 
-Values of parameters travel as texts, one an element: 64-bit integers and infinities stay what they are.
+Parameter values are sent as texts, one for each element, which preserves 64-bit integers and infinities.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
 
 
 class TopicRow(Record):
-    """A topic of the graph; several `types` are an error of its users."""
+    """A topic of the graph; several `types` indicate an error of the nodes that use it."""
 
     name: str
     types: list[str]
@@ -30,9 +30,11 @@ class TopicRow(Record):
 
 
 class TopicTraffic(Record):
-    """The traffic of a measured topic: hertz and bytes a second. `error` is why it cannot be measured or shown.
+    """The traffic of a measured topic: Hz and bytes per second.
 
-    Both figures are None before there are two messages.
+    `error` is the reason why it cannot be measured or shown.
+
+    Both values are None until two messages have arrived.
     """
 
     topic: str
@@ -42,7 +44,7 @@ class TopicTraffic(Record):
 
 
 class MessageField(Record):
-    """A field of a message with its value as text; `omitted` counts elements or fields that are left out."""
+    """A field of a message with its value as text; `omitted` is the number of omitted elements or fields."""
 
     name: str
     kind: str
@@ -58,13 +60,16 @@ class TopicList(ServerMessage):
 
 
 class TopicFigures(ServerMessage):
-    """The figures of every topic that the page measures, once a second."""
+    """The traffic of every topic that the page measures, sent once per second."""
 
     traffic: list[TopicTraffic]
 
 
 class TopicMessage(ServerMessage):
-    """The last message of an opened topic, a few times a second at most; `received` is seconds since the epoch."""
+    """The last message of an opened topic, sent at most a few times per second.
+
+    `received` is in seconds since the epoch.
+    """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("topic",)
 
@@ -74,7 +79,7 @@ class TopicMessage(ServerMessage):
 
 
 class WatchTopics(PageMessage):
-    """Follow topics from now on: their list, the traffic of some, the messages of some."""
+    """The topics to follow from now on: their list, the traffic of some, and the messages of some."""
 
     listed: bool
     measured: list[str]
@@ -87,14 +92,14 @@ _SERIES = struct.Struct("<II")
 
 
 class PlotField(Record):
-    """A field that can be plotted, in the notation behind the topic's name; `kind` is the type of its values."""
+    """A field that can be plotted, in the notation that follows the topic's name; `kind` is the type of its values."""
 
     path: str
     kind: str
 
 
 class PlotSeries(Record):
-    """A series that a page plots; the page chooses the id, which is unique in it."""
+    """A series that a page plots; the page chooses its ID, which is unique in the page."""
 
     id: int
     topic: str
@@ -102,14 +107,14 @@ class PlotSeries(Record):
 
 
 class SeriesState(Record):
-    """Why a series has no values; None if it has some, or waits for a first message."""
+    """The reason why a series has no values; None if it has values or is waiting for the first message."""
 
     id: int
     error: str | None
 
 
 class TopicFields(ServerMessage):
-    """The fields of a topic that can be plotted; answers `AskFields`, and again once the length of arrays is known."""
+    """The fields of a topic that can be plotted; response to `AskFields`, sent again once array lengths are known."""
 
     topic: str
     kind: str
@@ -118,19 +123,19 @@ class TopicFields(ServerMessage):
 
 
 class SeriesStates(ServerMessage):
-    """The states of the series of a page."""
+    """The states of a page's series."""
 
     states: list[SeriesState]
 
 
 class AskFields(PageMessage):
-    """The user chooses from the fields of a topic; None after the choice."""
+    """The user is choosing from the fields of a topic; None after the choice."""
 
     topic: str | None
 
 
 class WatchSeries(PageMessage):
-    """All series that the page plots from now on, and the seconds of the past that it shows."""
+    """All series that the page plots from now on, and how many seconds of the past it shows."""
 
     series: list[PlotSeries]
     seconds: float = 30.0
@@ -140,7 +145,7 @@ def pack_samples(series: Sequence[tuple[int, NDArray[Any]]]) -> bytes:
     """Return a binary frame of samples.
 
     Args:
-        series: ids, each with an array of shape (3, M): received (s), stamp (s), value.
+        series: IDs, each with an array of shape (3, M): received (s), stamp (s), value.
     """
     parts = [_HEADER.pack(SAMPLES_KIND, len(series), 0, 0)]
     for identity, samples in series:
@@ -185,7 +190,7 @@ ParameterKind = Literal[
 
 
 class ParameterRow(Record):
-    """A parameter. `minimum`, `maximum` and `step` are those of its range, as text; empty where there is none."""
+    """A parameter. `minimum`, `maximum` and `step` describe its range, as text; empty if there is no range."""
 
     name: str
     kind: ParameterKind
@@ -199,13 +204,16 @@ class ParameterRow(Record):
 
 
 class ParameterNodes(ServerMessage):
-    """Full names of the nodes that offer their parameters."""
+    """The full names of the nodes that offer their parameters."""
 
     nodes: list[str]
 
 
 class NodeParameters(ServerMessage):
-    """The parameters of a node, sorted by name; sent when it is watched and on every change. `error`: no answer."""
+    """The parameters of a node, sorted by name; sent when it is watched and on every change.
+
+    `error` is the reason if the node does not answer.
+    """
 
     node: str
     parameters: list[ParameterRow]
@@ -213,7 +221,7 @@ class NodeParameters(ServerMessage):
 
 
 class ParameterResult(ServerMessage):
-    """The outcome of `SetParameter`; `reason` is the node's."""
+    """The outcome of `SetParameter`; `reason` is given by the node."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("node", "name")
 
@@ -224,7 +232,7 @@ class ParameterResult(ServerMessage):
 
 
 class ParameterDump(ServerMessage):
-    """Answers `DumpParameters`: a parameter file, and its name."""
+    """The text of a parameter file and its name; response to `DumpParameters`."""
 
     node: str
     file: str
@@ -233,7 +241,7 @@ class ParameterDump(ServerMessage):
 
 
 class WatchParameters(PageMessage):
-    """Follow parameters from now on: the list of nodes, and the parameters of one."""
+    """The parameters to follow from now on: the list of nodes, and the parameters of one node."""
 
     listed: bool
     node: str | None
@@ -255,7 +263,10 @@ class DumpParameters(PageMessage):
 
 
 class LogLine(Record):
-    """A record. `level` is rcl_interfaces/msg/Log's: 10 debug, 20 info, 30 warning, 40 error, 50 fatal; `time` in s."""
+    """A log record. `level` is as in rcl_interfaces/msg/Log: 10 debug, 20 info, 30 warning, 40 error, 50 fatal.
+
+    `time` is in seconds.
+    """
 
     level: int
     node: str
@@ -267,7 +278,7 @@ class LogLine(Record):
 
 
 class LogLines(ServerMessage):
-    """New records in the order of arrival; `missed` counts those that were too many to send."""
+    """New log records in the order of arrival; `missed` is the number of records that could not be sent."""
 
     lines: list[LogLine]
     missed: int
@@ -283,7 +294,7 @@ TwistKind = Literal["auto", "Twist", "TwistStamped"]
 
 
 class TeleopTarget(Record):
-    """The topic and type of a pad; `auto` is the type of the topic's subscribers, or Twist without any."""
+    """The topic and type of a teleop pad; `auto` selects the type of the topic's subscribers, by default Twist."""
 
     topic: str
     kind: TwistKind
@@ -291,7 +302,7 @@ class TeleopTarget(Record):
 
 
 class TeleopState(ServerMessage):
-    """The state of a pad: its type, the number of subscribers, and why it does not publish, if so."""
+    """The state of a teleop pad: its type, the number of subscribers, and the reason if it does not publish."""
 
     topic: str
     kind: str
@@ -300,15 +311,17 @@ class TeleopState(ServerMessage):
 
 
 class AimTeleop(PageMessage):
-    """The page opens its pad, or changes its target; None closes it."""
+    """The page opens its teleop pad or changes its target; None closes the pad."""
 
     target: TeleopTarget | None
 
 
 class Drive(PageMessage):
-    """A velocity to publish now: m/s along x, y, z and rad/s around x, y, z. Repeated while one is held.
+    """A velocity to publish now: m/s along x, y, z and rad/s around x, y, z.
 
-    Without one for a while, or when the page closes, zero is published.
+    The page repeats it while the user holds the control.
+
+    If no velocity arrives for a while, or the page closes, zero is published.
     """
 
     linear: list[float]

@@ -1,4 +1,4 @@
-"""The panel of nav2: the states of its nodes and its goal, and commands to them."""
+"""The nav2 panel: the states of its nodes and its goal, and commands to them."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ NavigationCommand = Literal["startup", "pause", "resume", "reset", "cancel"]
 
 
 class WatchNavigation(PageMessage):
-    """Whether the page shows its panel."""
+    """Whether the page shows its navigation panel."""
 
     open: bool
 
 
 class CommandNavigation(PageMessage):
-    """The user pressed a button: a command to both lifecycle managers, or to cancel all goals."""
+    """The user pressed a button: a command to both lifecycle managers, or one that cancels all goals."""
 
     command: NavigationCommand
 
@@ -33,12 +33,12 @@ class NavigationState(ServerMessage):
         navigation: the nodes of lifecycle_manager_navigation.
         localization: the state of lifecycle_manager_localization.
         goal: the last goal of ``navigate_to_pose``.
-        eta: seconds that remain; None if there is no feedback, as for all below.
-        distance: metres that remain.
-        taken: seconds that have passed.
+        eta: the remaining time, seconds; like the next three, None if there is no feedback.
+        distance: the remaining distance, metres.
+        taken: the elapsed time, seconds.
         recoveries: the number of recoveries so far.
         busy: whether a command is running.
-        problem: why the last command failed; empty if it did not.
+        problem: the reason why the last command failed; empty if it succeeded.
     """
 
     navigation: ManagerState
@@ -56,8 +56,8 @@ class GoalOutcome(ServerMessage):
     """Whether the last goal failed, which is shown over the scene.
 
     Attributes:
-        reason: the last error of the node that aborted it, or why it was not sent; empty if unknown.
-        failed: whether it failed; false from when another goal is accepted.
+        reason: the last error of the node that aborted the goal, or the reason why it was not sent; empty if unknown.
+        failed: whether the goal failed; reset to false when another goal is accepted.
     """
 
     reason: str

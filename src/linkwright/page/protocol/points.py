@@ -1,4 +1,4 @@
-"""Content of the displays of many points: clouds, scans, cells."""
+"""Content of the displays with many points: clouds, scans and cells."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from linkwright.page.protocol.message import Bytes, DataContent, Floats, PageMes
 
 
 class CloudPoints(DataContent):
-    """PointCloud2 and its kin: points in the frame of the message, metres, shape (N, 3).
+    """PointCloud2 and similar messages: points in the frame of the message, metres, shape (N, 3).
 
-    `colours` has red, green, blue and alpha of each point, shape (N, 4), or nothing if all have the display's own
-    colour. `translucent` is whether an alpha is less than full. `pixel` is the size of points by their depth in the
-    frame, metres per metre; 0 if they have the display's size. For a slow line only every `step`-th
-    point is sent.
+    `colours` has the RGBA colour of each point, shape (N, 4), or is empty if all points have the display's own colour.
+    `translucent` is whether any alpha is less than full. `pixel` is the size of points relative to their depth in the
+    frame, metres per metre; 0 if they have the display's size. For a slow connection only every `step`-th point is
+    sent.
     """
 
     positions: Floats
@@ -24,7 +24,7 @@ class CloudPoints(DataContent):
 
 
 class CellGrid(DataContent):
-    """GridCells: middles of the cells in the frame of the message, metres, shape (N, 3), and the sides of a cell."""
+    """GridCells: cell centres in the frame of the message, metres, shape (N, 3), and the side lengths of a cell."""
 
     positions: Floats
     width: float
@@ -40,9 +40,9 @@ class AskPoint(PageMessage):
 
 
 class PointFields(ServerMessage):
-    """The fields of a point besides its coordinates, by name, in the order of the message.
+    """The fields of a point other than its coordinates, by name, in the order of the message.
 
-    A packed colour is ``#rrggbbaa``; a number that is not finite is a text.
+    A packed colour is ``#rrggbbaa``; a number that is not finite is sent as text.
     """
 
     display: str

@@ -14,7 +14,8 @@ from linkwright.page.protocol.message import Floats, PageMessage, Record, Server
 class JointControl(Record):
     """A row of the Joints panel.
 
-    `mimic` is the joint that it follows, position = multiplier * position of that + offset; the user cannot move it.
+    `mimic` is the joint that this joint follows, with position = multiplier * position of that joint + offset; the user
+    cannot move a mimic joint.
     """
 
     name: str
@@ -34,30 +35,30 @@ class Joints(ServerMessage):
 
 
 class JointPositions(ServerMessage):
-    """Positions of the Joints panel's joints, rad or m, including mimicking ones."""
+    """The positions of the Joints panel's joints, rad or m, including mimic joints."""
 
     positions: dict[str, float]
 
 
 class SetJoint(PageMessage):
-    """The user moved a joint, rad or m."""
+    """The user moved a joint; the position is in rad or m."""
 
     name: str
     position: float
 
 
 class SetJoints(PageMessage):
-    """A pose was recalled, or a sweep advances: several joints at once, rad or m."""
+    """Positions of several joints, rad or m: a pose was recalled, or a sweep advances."""
 
     positions: dict[str, float]
 
 
 class RandomizeJoints(PageMessage):
-    """The Randomize button."""
+    """The user pressed the Randomize button."""
 
 
 class CenterJoints(PageMessage):
-    """The Center button."""
+    """The user pressed the Center button."""
 
 
 ShapeKind = Literal[
@@ -67,16 +68,17 @@ ShapeKind = Literal[
 
 
 class Submesh(Record):
-    """The part of a mesh file that is drawn, by its name there; `center` moves it to the origin."""
+    """The part of a mesh file to draw, by its name in the file; `center` moves it to the origin."""
 
     name: str
     center: bool
 
 
 class Surface(Record):
-    """The material of a shape of a world: roughness and metalness from 0 to 1, and addresses of images.
+    """The material of a shape in a world: roughness and metalness from 0 to 1, and image addresses.
 
-    `emissive_map` is its own light, `occlusion_map` (red) darkens places that ambient light does not reach.
+    `emissive_map` is the light that the surface emits; `occlusion_map` (red) darkens places that ambient light does not
+    reach.
     """
 
     roughness: float
@@ -92,14 +94,14 @@ class Shape(Record):
     """A shape to draw, posed in its link's frame.
 
     `size` is x, y, z for a box; radius, length for a cylinder or capsule (along z); radius for a sphere; scale x, y, z
-    for a mesh. `url` and `format` (the file ending, lower case) are set for a mesh. `color` is None where the URDF
-    gives no colour: then a mesh keeps its own materials and another shape is RViz's red. With `repaints` colour and
-    texture take the place of the mesh's own.
+    for a mesh. `url` and `format` (the file extension, lower case) are set for a mesh. `color` is None if the URDF
+    gives no colour; then a mesh keeps its own materials and another shape is RViz's red. With `repaints`, colour and
+    texture replace the mesh's own.
 
-    Of worlds: `size` is the radii of an ellipsoid; radius, length of a cone (its tip above); x, y of a plane; the
+    For worlds, `size` is the radii of an ellipsoid; radius, length of a cone (tip up); x, y of a plane; the
     height of a polyline, whose `outlines` (x, y, x, y, ...) cut holes into each other; x, y, z of a heightmap, the
-    offset of its middle, and the edge length of its texture; `heights` are shares of z, shape (rows, columns), from
-    the least x and y on along x.
+    offset of its centre, and the edge length of its texture; `heights` are fractions of z, shape (rows, columns), in
+    rows along x from the minimum x and y.
     """
 
     kind: ShapeKind
@@ -120,7 +122,7 @@ class Shape(Record):
 
 
 class LinkScene(Record):
-    """A link to draw in the frame of its name."""
+    """A link to draw in the frame with its name."""
 
     name: str
     frame: str
@@ -132,7 +134,7 @@ class LinkScene(Record):
 
 
 class JointScene(Record):
-    """A joint, posed in its parent link's frame; `axis` is in the joint's own. SI units.
+    """A joint, posed in its parent link's frame; `axis` is in the joint's own frame. SI units.
 
     `lower` and `upper` are None if there is no limit, or if it is not finite.
     """
@@ -149,7 +151,7 @@ class JointScene(Record):
 
 
 class RobotScene(ServerMessage):
-    """The robot of a RobotModel display; `revision` counts descriptions. An empty list of links means no robot."""
+    """The robot of a RobotModel display; `revision` counts its descriptions. An empty list of links means no robot."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -161,7 +163,7 @@ class RobotScene(ServerMessage):
 
 
 class MeshStatus(PageMessage):
-    """The outcome of loading a mesh in the page; `error` is None if it is drawn."""
+    """The outcome of loading a mesh in the page; `error` is None if the mesh is drawn."""
 
     display: str
     link: str
@@ -170,14 +172,14 @@ class MeshStatus(PageMessage):
 
 
 class AskProvenance(PageMessage):
-    """The user selected a link of a RobotModel display; ask for its place in the files."""
+    """The user selected a link of a RobotModel display, and the page asks where it is written."""
 
     display: str
     link: str
 
 
 class LinkProvenance(ServerMessage):
-    """The place of a link with its macro calls and their values, as lines; answers `AskProvenance`."""
+    """Where a link is written, with its macro calls and their values, as lines; response to `AskProvenance`."""
 
     display: str
     link: str

@@ -1,10 +1,10 @@
 """Simulated worlds: the state and control of a simulation, and modelling. Metres, seconds, newtons.
 
-Modelling a world: the models and lights of its file, and pages' edits of them.
+Modelling a world covers the models and lights of its file, and pages' edits of them.
 
-Poses are x, y, z in metres and roll, pitch, yaw in radians, in the frame of the world. A size is that of a shape in
-metres: x, y, z of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere. The frame of a shape is
-in its middle; a ramp rises along x. Colours are red, green, blue, alpha from 0 to 1.
+Poses are x, y, z in metres and roll, pitch, yaw in radians, in the world frame. Sizes of shapes are in metres: x, y, z
+of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere. The frame of a shape is at its centre,
+and a ramp rises along x. Colours are red, green, blue, alpha from 0 to 1.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ NewKind = Literal[
 class WorldEntity(Record):
     """A model or light of the world.
 
-    `shape`, `size` and `colour` are of a model that is one simple shape, else None and empty; `address` is of a model
-    that an ``<include>`` names; `parts` are the names of the models grouped in it.
+    `shape`, `size` and `colour` are set for a model that is one simple shape, and otherwise None or empty. `address` is
+    set for a model that an ``<include>`` names. `parts` are the names of the models grouped in it.
     """
 
     name: str
@@ -40,7 +40,7 @@ class WorldEntity(Record):
 class ModellingState(ServerMessage):
     """Whether the world can be edited and is being edited, and its content.
 
-    `file` is None for a world without a file of its own, which is saved as one that the user names. While no user edits
+    `file` is None for a world without its own file, which is saved to a file that the user names. While no user edits
     the world, `entities` may be empty.
     """
 
@@ -66,13 +66,13 @@ class ModelChoice(Record):
 
 
 class ModelChoices(ServerMessage):
-    """The models that may be added, by name."""
+    """The models that can be added, sorted by name."""
 
     models: list[ModelChoice]
 
 
 class EntityChange(Record):
-    """The change of a model or light; fields that are None stay."""
+    """A change of a model or light; fields that are None are left unchanged."""
 
     name: str
     pose: list[float] | None
@@ -83,13 +83,13 @@ class EntityChange(Record):
 
 
 class SetModelling(PageMessage):
-    """The user starts or stops editing the world; meanwhile the simulation is paused at its start."""
+    """The user starts or stops editing the world; during editing the simulation is paused at its start."""
 
     active: bool
 
 
 class AddEntity(PageMessage):
-    """The user adds an object; `address` is that of a model, an empty `size` means the default one."""
+    """The user adds an object; `address` is the address of a model, and an empty `size` means the default size."""
 
     shape: NewKind
     address: str
@@ -104,7 +104,7 @@ class ChangeEntities(PageMessage):
 
 
 class CopyEntities(PageMessage):
-    """The user copies objects; the copies are placed at an offset (x y z) from them."""
+    """The user copies objects; the copies are placed at an offset (x y z) from the originals."""
 
     names: list[str]
     offset: list[float]
@@ -117,7 +117,7 @@ class DeleteEntities(PageMessage):
 
 
 class GroupEntities(PageMessage):
-    """The user makes one model of several, which become its parts."""
+    """The user groups several models into one, and they become its parts."""
 
     names: list[str]
     name: str
@@ -130,11 +130,11 @@ class UngroupEntity(PageMessage):
 
 
 class UndoWorld(PageMessage):
-    """Undo the last change of the world."""
+    """The user undoes the last change of the world."""
 
 
 class RedoWorld(PageMessage):
-    """Redo the change that was undone last."""
+    """The user redoes the change that was undone last."""
 
 
 class SaveWorld(PageMessage):
@@ -144,14 +144,14 @@ class SaveWorld(PageMessage):
 
 
 class AskModels(PageMessage):
-    """The user opens the choice of models on the search path."""
+    """The user opens the list of models on the search path."""
 
 
 class SimulationStatus(ServerMessage):
     """The state of the simulation; `present` is false if there is none.
 
-    `drivable` is true if a topic of velocities has a subscriber. `time` is simulated time; it and the real-time factor
-    are None until the simulation publishes them.
+    `drivable` is true if a velocity topic has a subscriber. `time` is simulated time. It and the real-time factor are
+    None until the simulation publishes them.
     """
 
     present: bool
@@ -165,13 +165,13 @@ NO_SIMULATION = SimulationStatus(present=False, drivable=False, paused=False, ti
 
 
 class SimulationNotice(ServerMessage):
-    """Why the simulation refused the page's request."""
+    """The reason why the simulation refused the page's request."""
 
     text: str
 
 
 class ModelAdded(ServerMessage):
-    """The model that the page requested is in the world."""
+    """Confirms that the model that the page requested is in the world."""
 
     name: str
 
@@ -183,7 +183,7 @@ class ControlSimulation(PageMessage):
 
 
 class SpawnModel(PageMessage):
-    """The user adds a model or robot to the world: a file's path, ``package://`` or ``model://`` address."""
+    """The user adds a model or robot to the world, by a file path or a ``package://`` or ``model://`` address."""
 
     address: str
     position: list[float]
@@ -196,7 +196,7 @@ class DeleteModel(PageMessage):
 
 
 class DragModel(PageMessage):
-    """The user moves a model by an offset, in the world's frame, from its pose when `begins` was true last."""
+    """The user moves a model by an offset in the world frame, from its pose when `begins` was last true."""
 
     model: str
     begins: bool
@@ -204,7 +204,7 @@ class DragModel(PageMessage):
 
 
 class PushLink(PageMessage):
-    """The user pushes a link (``model::link``) for a moment; `force` is in the world's frame, `point` in the link's."""
+    """The user pushes a link (``model::link``) briefly; `force` is in the world frame, `point` in the link's frame."""
 
     link: str
     point: list[float]

@@ -1,4 +1,4 @@
-"""Time: the Time panel, the timeline of a recording that is shown, and recording. Times are seconds since the epoch."""
+"""Time: the Time panel, the timeline of a displayed recording, and recording. Times are seconds since the epoch."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
 class TimelineTopic(Record):
     """A topic of a recording, with the number of its messages.
 
-    `counts` are those in equal parts of the recording; empty if unknown.
+    `counts` are the numbers of messages in equal parts of the recording; empty if unknown.
     """
 
     name: str
@@ -20,9 +20,10 @@ class TimelineTopic(Record):
 
 
 class Timeline(ServerMessage):
-    """The recording that is shown: its name, its times and topics.
+    """The displayed recording: its name, its times and its topics.
 
-    With `live` it is the history of the last minutes: it has no name, and `HistoryExtent` reports how its ends move.
+    With `live` it is the history of the last minutes: it has no name, and `HistoryExtent` reports its changing start
+    and end.
     """
 
     name: str
@@ -33,7 +34,7 @@ class Timeline(ServerMessage):
 
 
 class HistoryExtent(ServerMessage):
-    """The stored part of the last minutes: its first and last time, its bytes, and their limit."""
+    """The stored part of the last minutes: its first and last time, its size in bytes, and the maximum size."""
 
     start: float
     end: float
@@ -42,11 +43,11 @@ class HistoryExtent(ServerMessage):
 
 
 class Playhead(ServerMessage):
-    """The position in a recording. While `playing`, sent a few times a second.
+    """The position in a recording, which is sent a few times per second while `playing`.
 
-    `live` is whether the present is shown, of a timeline of the last minutes.
-    `seeks` counts the seeks of all users: a page whose own seek is done proceeds to its next one.
-    `problem` is why playback stopped if the recording cannot be read; else it is empty.
+    `live` is whether the present is shown, in a timeline of the last minutes. `seeks` counts the seeks of all users: a
+    page sends its next seek when its previous one is done. `problem` is the reason why playback stopped if the
+    recording cannot be read; otherwise it is empty.
     """
 
     position: float
@@ -65,20 +66,20 @@ class Play(PageMessage):
 
 
 class SeekTime(PageMessage):
-    """The user goes to a time of a recording."""
+    """The user jumps to a time of a recording."""
 
     position: float
 
 
 class StepTime(PageMessage):
-    """The user goes to the next message that is shown, or to the one before; or to that of a single topic."""
+    """The user jumps to the next or previous displayed message, of any topic or of a single one."""
 
     forward: bool
     topic: str = ""
 
 
 class GoLive(PageMessage):
-    """The user goes back from the last minutes to the present."""
+    """The user returns from the last minutes to the present."""
 
 
 class SetPlayback(PageMessage):
@@ -89,9 +90,9 @@ class SetPlayback(PageMessage):
 
 
 class RecordedFile(Record):
-    """A finished recording: its file on the server, bytes, seconds, and its address for pages.
+    """A finished recording: its file on the server, size in bytes, length in seconds, and its address for pages.
 
-    `simulated` are the seconds that passed in the simulation meanwhile; None where time is not simulated, or not known.
+    `simulated` is the simulated duration in seconds; None if time is not simulated, or the duration is unknown.
     """
 
     name: str
@@ -103,11 +104,12 @@ class RecordedFile(Record):
 
 
 class RecordingState(ServerMessage):
-    """The state of recording, for all pages; sent each second while there is a recording.
+    """The state of recording, for all pages; sent every second during a recording.
 
-    `possible` is false while a recording is shown. `path` is that of the recording being written, empty if there is
-    none; `length` are seconds, `size` bytes. `saved` is the written part of the last minutes, null if none is.
-    `problem` is why the last recording failed or ended early. `files` are those of this program, the last first.
+    `possible` is false while a recording is shown. `path` is the path of the recording being written, empty if there is
+    none. `length` is in seconds, `size` in bytes. `saved` is the share of the last minutes that is already written,
+    null if they are not being saved. `problem` is the reason why the last recording failed or ended early. `files` are
+    the recordings of this program, newest first.
     """
 
     possible: bool
@@ -123,7 +125,7 @@ NOTHING_RECORDED = RecordingState(possible=True, path="", length=0.0, size=0, sa
 
 
 class RecordTopics(PageMessage):
-    """The user records topics; without any, all present and future ones."""
+    """The user records topics; an empty list means all present and future topics."""
 
     topics: list[str]
 
@@ -143,7 +145,7 @@ SyncMode = Literal["Off", "Exact", "Approximate"]
 
 
 class TimeState(ServerMessage):
-    """The state of time, sent when it changes. `sources` are the displays whose messages can drive it."""
+    """The state of the Time panel, sent on changes. `sources` are the displays whose messages can drive time."""
 
     paused: bool
     mode: SyncMode
@@ -152,10 +154,11 @@ class TimeState(ServerMessage):
 
 
 class Clock(ServerMessage):
-    """The clocks now, in seconds, for pages that watch them.
+    """The current clocks in seconds, for pages that watch them.
 
-    `ros_start` and `wall_start` are when the elapsed time began. While `running` the ROS time advances as the wall time
-    does, and the page counts by itself; a simulated or paused clock is sent again whenever it has changed.
+    `ros_start` and `wall_start` are the times from which elapsed times are counted. While `running`, ROS time advances
+    at the speed of the wall clock, and the page advances it itself. A simulated or paused clock is sent again whenever
+    it has changed.
     """
 
     ros: float
@@ -166,11 +169,11 @@ class Clock(ServerMessage):
 
 
 class TimeReset(ServerMessage):
-    """Time was reset: displays dropped their messages."""
+    """Reports that time was reset and displays dropped their messages."""
 
 
 class SetTime(PageMessage):
-    """The user pauses or resumes, or synchronizes time with a display's messages."""
+    """The user pauses or resumes time, or synchronizes it with a display's messages."""
 
     paused: bool
     mode: SyncMode
@@ -178,7 +181,7 @@ class SetTime(PageMessage):
 
 
 class ResetTime(PageMessage):
-    """The Reset button: displays are cleared, and elapsed times begin at zero."""
+    """The user presses the Reset button: displays are cleared, and elapsed times restart at zero."""
 
 
 class WatchClock(PageMessage):

@@ -1,7 +1,7 @@
-"""Views, the poses of the camera, and tools, the uses of the mouse in the scene.
+"""Views, which are poses of the camera, and tools, which determine how the mouse acts in the scene.
 
-Every page has a camera and a selected tool of its own; pages share the file's view, the saved views, and the list and
-settings of tools. The values of a view are named by the path of their property: ``Distance``, ``Focal Point/X``.
+Every page has its own camera and selected tool. Pages share the file's view, the saved views, and the list and settings
+of tools. The values of a view are identified by the path of their property: ``Distance``, ``Focal Point/X``.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
 
 
 class View(Record):
-    """A view: RViz's class of it (``rviz_default_plugins/Orbit``), its name, and its values."""
+    """A view: its RViz class (``rviz_default_plugins/Orbit``), its name, and its values."""
 
     cls: str
     name: str
@@ -21,7 +21,7 @@ class View(Record):
 
 
 class ViewClass(Record):
-    """A class of views: its rows, whose ids are names of values, and RViz's defaults, also of rows not shown."""
+    """A type of view: its rows, whose IDs are names of values, and RViz's defaults, including rows not shown."""
 
     cls: str
     properties: list[Property]
@@ -29,16 +29,16 @@ class ViewClass(Record):
 
 
 class ViewClasses(ServerMessage):
-    """All classes of views; sent before the first view."""
+    """All types of views; sent before the first view."""
 
     classes: list[ViewClass]
 
 
 class ViewState(ServerMessage):
-    """The view of a configuration; the page owns the camera from then on.
+    """The view of a configuration; from then on the page controls the camera.
 
-    `revision` counts the configurations that were opened: a page that reconnects keeps its camera while it is the same.
-    `whole_robot` is whether no user chose this view: the camera then fits the robot, once it is drawn.
+    `revision` counts the configurations that were opened. If it is unchanged, a page that reconnects keeps its camera.
+    `whole_robot` is whether no user chose this view: the camera then fits the robot once it is drawn.
     """
 
     view: View
@@ -47,28 +47,28 @@ class ViewState(ServerMessage):
 
 
 class SavedView(Record):
-    """A saved view and its id, which stays the same when the view is renamed or changed."""
+    """A saved view and its ID, which does not change when the view is renamed or edited."""
 
     id: str
     view: View
 
 
 class SavedViews(ServerMessage):
-    """The saved views, in their order, sent after each change."""
+    """The saved views in order, sent after each change."""
 
     views: list[SavedView]
 
 
 class ViewChanged(PageMessage):
-    """The page's current camera, sent at most a few times a second; the last one of any page is saved in the file."""
+    """The page's current camera, sent at most a few times per second; the last one of any page is saved in the file."""
 
     view: View
 
 
 class RobotMeasured(PageMessage):
-    """The extent of robots with their meshes, measured by a page whose camera the user has not moved.
+    """The size of the robots with their meshes, measured by a page whose camera the user has not moved.
 
-    That is the diagonal of the box around them, and the height of the ground below them, in the Fixed Frame, m.
+    It consists of the diagonal of their bounding box, and the height of the ground below them, in the Fixed Frame, m.
     """
 
     diagonal: float
@@ -95,7 +95,7 @@ class RemoveSavedView(PageMessage):
 
 
 class Tool(Record):
-    """A tool of the toolbar. `supported` is false for an unknown class, which the file keeps."""
+    """A tool of the toolbar. `supported` is false for an unknown class, which is preserved in the file."""
 
     id: str
     cls: str
@@ -105,7 +105,7 @@ class Tool(Record):
 
 
 class ToolClass(Record):
-    """A class of tools that can be added."""
+    """A type of tool that can be added."""
 
     cls: str
     name: str
@@ -119,7 +119,7 @@ class Tools(ServerMessage):
 
 
 class ToolPropertyChanged(ServerMessage):
-    """A new setting of a tool, set by any page; the answer to a refused value is the present one."""
+    """A tool's new setting, set by any page; after a refused value, it contains the current setting."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("id",)
 
@@ -147,7 +147,7 @@ class RemoveTool(PageMessage):
 
 
 class PoseChosen(PageMessage):
-    """A 2D Pose Estimate or 2D Goal Pose was set in the Fixed Frame: metres, and radians about z."""
+    """The user set a 2D Pose Estimate or 2D Goal Pose in the Fixed Frame: metres, and radians about z."""
 
     tool: str
     x: float
@@ -156,7 +156,7 @@ class PoseChosen(PageMessage):
 
 
 class PointChosen(PageMessage):
-    """A Publish Point tool was used on a point of the Fixed Frame, metres."""
+    """The user selected a point with a Publish Point tool, in the Fixed Frame, metres."""
 
     tool: str
     x: float

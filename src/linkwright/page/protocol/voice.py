@@ -1,8 +1,8 @@
-"""The Voice panel: sound of pages' microphones, recognized commands and answers, commands as text.
+"""The Voice panel: sound from pages' microphones, recognized commands and answers, and commands as text.
 
-Sound is sent in binary frames, little endian: four uint32 (kind 5, number of samples N, number of samples that the
-browser lost in them or before them, 0), and int16 N, mono at 16 kHz. A frame has a tenth of a second, or less where the
-sound ends.
+Sound is sent in little-endian binary frames: four uint32 (kind 5, number of samples N, number of samples that the
+browser lost in or before them, 0), and N int16 samples, mono at 16 kHz. A frame contains a tenth of a second, or less
+at the end of the sound.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ _HEADER = struct.Struct("<IIII")
 
 @dataclass(frozen=True, slots=True)
 class SoundBlock:
-    """Sound of a page's microphone.
+    """Sound from a page's microphone.
 
     Attributes:
-        samples: mono PCM of 16 bits at 16 kHz, shape (n,).
-        lost: seconds that are missing in them or before them, because the browser's machine was too busy.
+        samples: mono 16-bit PCM at 16 kHz, shape (n,).
+        lost: the seconds missing in or before the samples, because the browser's machine was too busy.
     """
 
     samples: NDArray[np.int16]
@@ -43,7 +43,7 @@ class SoundBlock:
 
 
 def unpack_sound(frame: bytes) -> SoundBlock | None:
-    """Return the sound in a binary frame of a page, or None for another frame."""
+    """Return the sound in a binary frame of a page; None for any other kind of frame."""
     if len(frame) < _HEADER.size:
         return None
     kind, count, lost, _ = _HEADER.unpack_from(frame)
@@ -72,7 +72,7 @@ TalkMode = Literal["off", "ready", "held", "open"]
 class Talk(PageMessage):
     """The mode of the page's microphone.
 
-    It is off; ready, which publishes nothing yet; or published, while a button is held or all the time.
+    It is off; ready, without publishing sound yet; or published, either while a button is held or continuously.
     """
 
     mode: TalkMode
@@ -91,12 +91,12 @@ class VoiceState(ServerMessage):
     """The page that talks, and the listeners in the graph.
 
     Attributes:
-        talking: the page whose sound is published. One page talks at a time: the first with its button held, else the
-            first that listens all the time.
+        talking: the page whose sound is published. One page talks at a time: the first with its button held, or else
+            the first that listens continuously.
         sound_listeners: the number of subscribers to sound.
         text_listeners: the number of subscribers to commands as text.
-        cut: the page sent more sound than time has passed, or reported too much loss, and has to restart.
-        proposes_enrolling: the robot recognized no word of a command and proposes to enrol words.
+        cut: whether the page has to restart, because it sent sound faster than real time or reported too much loss.
+        proposes_enrolling: whether the robot recognized no word of a command and proposes to enrol words.
     """
 
     talking: Talking

@@ -1,4 +1,4 @@
-"""Words that the user enrols in the Voice panel: recorded three times each, and stored in a file of the user's."""
+"""Words that the user enrols in the Voice panel: each is recorded three times, and stored in the user's file."""
 
 from __future__ import annotations
 
@@ -8,26 +8,26 @@ from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
 
 
 class EnrolledWord(Record):
-    """A word and the number of its takes."""
+    """A word and its number of recordings."""
 
     name: str
     takes: int
 
 
 class WatchWords(PageMessage):
-    """Start or stop sending the words, now and whenever they change."""
+    """Start or stop sending the words, initially and after every change."""
 
     watched: bool
 
 
 class BeginTake(PageMessage):
-    """Start a take: the sound until `EndTake` is a word, said once; it is not published."""
+    """Start recording a word: the sound until `EndTake` is the word, said once. It is not published."""
 
     name: str
 
 
 class EndTake(PageMessage):
-    """End the take.
+    """End the recording of a word.
 
     Attributes:
         has_gaps: whether some of the sound was lost.
@@ -50,23 +50,23 @@ class RenameWord(PageMessage):
 
 
 class ImportWords(PageMessage):
-    """Import the words of a file; they replace words of the same names."""
+    """Import the words of a file; they replace words with the same names."""
 
     text: str
 
 
 class AskWordsFile(PageMessage):
-    """Ask for the file of the words."""
+    """Request the file that contains the words."""
 
 
 class VoiceWords(ServerMessage):
-    """The words.
+    """The enrolled words.
 
     Attributes:
-        words: in the order in which they were enrolled.
-        enough: the number of takes that a word needs.
+        words: the words, in the order in which they were enrolled.
+        enough: the number of recordings that a word needs.
         file: the file in which they are stored.
-        problem: why the file cannot be read or written, or a request failed.
+        problem: the reason why the file cannot be read or written, or why a request failed.
     """
 
     words: list[EnrolledWord]
@@ -76,14 +76,14 @@ class VoiceWords(ServerMessage):
 
 
 class TakeJudged(ServerMessage):
-    """The outcome of a take.
+    """The verdict on a recording of a word.
 
     Attributes:
         number: counts the recordings.
         name: the word.
-        code: the code of the finding for which it was refused; None when it was accepted.
+        code: the code of the finding for which the recording was refused; None if it was accepted.
         text: the text of that finding.
-        peak: the loudest sample, 0 to 1.
+        peak: the peak amplitude, 0 to 1.
         seconds: the length of the recording.
     """
 
@@ -98,6 +98,6 @@ class TakeJudged(ServerMessage):
 
 
 class VoiceWordsFile(ServerMessage):
-    """The text of the file of words."""
+    """The text of the file that contains the words."""
 
     text: str

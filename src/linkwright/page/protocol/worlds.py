@@ -13,9 +13,9 @@ from linkwright.page.protocol.robot import LinkScene
 class LightScene(Record):
     """A light of a world.
 
-    `position` (m) and `direction`, a unit vector, are in the frame of the link named by `link`, or of the world.
-    `color` is red, green, blue with the light's intensity. Of point and spot lights: `range` in m, and how the light
-    fades: constant, linear, quadratic. `cone` is the inner and outer angle of a spot, in rad.
+    `position` (m) and `direction` (a unit vector) are in the frame of the link that `link` names, or in the world
+    frame. `color` is red, green, blue, multiplied by the light's intensity. Point and spot lights have a `range` in m,
+    and constant, linear and quadratic attenuation. `cone` is the inner and outer angle of a spot light, in rad.
     """
 
     kind: Literal["directional", "point", "spot"]
@@ -30,7 +30,7 @@ class LightScene(Record):
 
 
 class RayAngles(Record):
-    """The directions of rays in one plane: `count` of them, from `first` on by `step`, in rad."""
+    """The directions of rays in one plane: `count` angles, starting at `first`, in steps of `step`, in rad."""
 
     first: float
     step: float
@@ -40,9 +40,9 @@ class RayAngles(Record):
 class LidarScene(Record):
     """A lidar of a world, with those of its rays that are drawn.
 
-    `name` is its own with those of model and link, `position` (m) and `quaternion` (x y z w) are in the frame of the
-    link. It looks along x; horizontal angles are about z, vertical ones upwards. `nearest` and `farthest` are its
-    range, in m. `visualized` is whether its description asks to draw it.
+    `name` includes the names of model and link. `position` (m) and `quaternion` (x y z w) are in the frame of the link.
+    The lidar looks along x; horizontal angles are about z, vertical angles are positive upwards. `nearest` and
+    `farthest` are the limits of its range, in m. `visualized` is whether its description asks to draw it.
     """
 
     name: str
@@ -57,10 +57,10 @@ class LidarScene(Record):
 
 
 class CameraScene(Record):
-    """A camera of a world; as `LidarScene`, and it looks along x with z up.
+    """A camera of a world; fields are as in `LidarScene`, and it looks along x with z up.
 
-    `left`, `right`, `up` and `down` are the bounds of its image at a distance of 1; it sees from `near` to `far`, in m
-    along x.
+    `left`, `right`, `up` and `down` are the bounds of its image at a distance of 1. `near` and `far` are its clipping
+    distances along x, in m.
     """
 
     name: str
@@ -77,7 +77,10 @@ class CameraScene(Record):
 
 
 class FogScene(Record):
-    """Fog of a world: its colour, red, green, blue; from `start` to `end` in m, or with `density` in 1/m."""
+    """The fog of a world: its colour (red, green, blue) and its range.
+
+    The range is from `start` to `end` in m, or given by a `density` in 1/m.
+    """
 
     color: list[float]
     start: float
@@ -86,12 +89,12 @@ class FogScene(Record):
 
 
 class WorldScene(DataContent):
-    """World: the content to draw; `revision` counts descriptions.
+    """The content of a World display to draw; `revision` counts descriptions.
 
-    `ambient` and `background` are colours, red, green, blue; `shadows` is whether lights cast any. `daylight` is that
-    of its sky, from 0 at night to 1; None if there is no sky. `robots` are the models that are robots; `camera` is the
-    pose that the world's file gives to the camera of a window, x y z qx qy qz qw in the frame of the world, looking
-    along x; None if it gives none.
+    `ambient` and `background` are colours: red, green, blue. `shadows` is whether lights cast shadows. `daylight` is
+    the daylight of its sky, from 0 at night to 1; None if there is no sky. `robots` are the models that are robots.
+    `camera` is the initial camera pose in the world's file, x y z qx qy qz qw in the world frame, looking along x; None
+    if the file sets none.
     """
 
     revision: int
@@ -110,9 +113,10 @@ class WorldScene(DataContent):
 
 
 class WorldPoses(DataContent):
-    """World: the poses of the links in the frame of the content, shape (N, 7): x y z qx qy qz qw, in the scene's order.
+    """The poses of the links of a World display, in the order of the scene.
 
-    Only for the scene of the same revision.
+    They are in the frame of the content, shape (N, 7): x y z qx qy qz qw. They apply only to the scene with the same
+    revision.
     """
 
     revision: int
@@ -120,9 +124,9 @@ class WorldPoses(DataContent):
 
 
 class WorldRays(DataContent):
-    """World: the lengths of the rays of the lidar with this name, m, shape (vertical * horizontal,).
+    """The lengths of the rays of a World display's lidar with this name, m, shape (vertical * horizontal,).
 
-    inf for rays that hit nothing, -inf for rays that hit an object that is too near to be measured.
+    The length is inf for rays that hit nothing, and -inf for rays that hit an object that is too near to be measured.
     """
 
     lidar: str
