@@ -1,1 +1,1 @@
-"""Page features of a viewer, which handle requests besides displays, each a module or a package."""
+"""Page features of a viewer, which handle requests that are not about displays; each is a module or a package."""

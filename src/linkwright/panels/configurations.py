@@ -1,4 +1,4 @@
-"""Editing configurations from pages: adding and removing displays, undo, open, save."""
+"""Edit configurations from pages: add and remove displays, undo, open, save."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ Message = TypeVar("Message")
 
 @dataclass(frozen=True, slots=True)
 class Request(Generic[Message]):
-    """A request of a page, and the configuration that the page sees."""
+    """A request of a page, and the configuration that the page shows."""
 
     page: Page
     manager: VisualizationManager
@@ -70,7 +70,7 @@ class ConfigurationFeature(PageFeature):
 
     Args:
         viewer: the viewer that it belongs to.
-        recent: the files opened or saved before.
+        recent: the recently opened or saved files.
     """
 
     def __init__(self, viewer: FeatureHost, recent: RecentFiles | None = None) -> None:
@@ -79,23 +79,23 @@ class ConfigurationFeature(PageFeature):
         self._sent: dict[VisualizationManager, Configuration] = {}
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return the current state."""
+        """Return the current state of the configuration."""
         self._sent[manager] = self._state(manager)
         return [self._sent[manager]]
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Forget the state that its pages received."""
+        """Drop the state that was sent to the manager's pages."""
         self._sent.pop(manager, None)
 
     def edited(self, manager: VisualizationManager) -> None:
-        """Send pages the current state, if it has changed."""
+        """Send pages the state of the configuration, if it has changed."""
         state = self._state(manager)
         if self._sent.get(manager) != state:
             self._sent[manager] = state
             manager.publish(state)
 
     def receive(self, page: Page, message: Any) -> None:
-        """Handle a request, or send the reason why it is refused."""
+        """Handle a request, or send the reason for refusing it."""
         manager = self.managers.of(page)
         try:
             _DEEDS[type(message)](self, Request(page, manager, message))
@@ -260,22 +260,22 @@ ConfigurationFeature.RECEIVES = tuple(_DEEDS)
 
 
 def _displays_of(manager: VisualizationManager, identities: list[str]) -> list[ViewerDisplay]:
-    """Return the displays with these ids in the order of the tree, without those that are gone."""
+    """Return the displays with these IDs in the order of the tree, without those that no longer exist."""
     selected = set(identities)
     return [display for display in manager.displays if display.id in selected]
 
 
 def _folder(manager: VisualizationManager) -> Path:
-    """Return the folder to which paths are relative: that of the open file, or the working directory."""
+    """Return the folder to which paths are relative: the open file's folder, or the working directory."""
     path = manager.config.path
     return path.absolute().parent if path is not None else Path.cwd()
 
 
 def _name(text: str) -> str:
-    """Return a valid name from a page.
+    """Check a name that a page sent, and return it.
 
     Raises:
-        ValueError: it is empty or too long.
+        ValueError: the name is empty or too long.
     """
     name = " ".join(text.split())
     if not name or len(name) > 200:
@@ -284,21 +284,23 @@ def _name(text: str) -> str:
 
 
 class PanelsFeature(PageFeature):
-    """Each page has panels of its own and starts with the file's; the file gets those of the page that changed last.
+    """The open panels of pages, which start with the file's panels.
 
-    Other open pages are not notified: a page's panels are its own. Where there is no file there
-    is nothing to save either: the browser remembers the panels.
+    The file gets the panels of the page that changed last.
+
+    Other open pages are not notified, since each page has its own panels. If there is no file, nothing is saved: the
+    browser remembers the panels.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (ShowPanels,)
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return the panels that the file shows."""
+        """Return the panels that the file opens."""
         config = manager.config
         return [Panels(manager.opened, config.document.source.name, config.panels.shown)]
 
     def receive(self, page: Page, message: Any) -> None:
-        """Write the panels of the page into the file."""
+        """Write the page's open panels into the configuration."""
         manager = self.managers.of(page)
         config = manager.config
         if config.panels.show(message.shown) and config.path is not None:

@@ -1,4 +1,4 @@
-"""Descriptions for pages: answers about them, findings on them, and the form of their arguments."""
+"""Descriptions for pages: details, findings, and the form for their arguments."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class ArgumentsFeature(PageFeature):
         self.context.pages.publish(form)
 
     def receive(self, page: Page, message: GiveArguments) -> None:
-        """Handle the values for the requested arguments."""
+        """Handle the values that a page gives to the requested arguments."""
         give, names = self._give, set(self._form.names)
         if give is not None:
             self.ask(NOTHING_ASKED, None)
@@ -75,12 +75,12 @@ class KnownDescription:
     """The description of a display. All methods may be called in another thread.
 
     Args:
-        display: the RobotModel display.
+        display: the ID of the RobotModel display.
         revision: counts the descriptions of the display.
         robot: the robot.
-        text: the text that it was read from.
+        text: the text from which the robot was read.
         prefix: the display's TF Prefix.
-        files: the files that the text was made from, as far as they are known.
+        files: the files from which the text was made, as far as they are known.
     """
 
     def __init__(
@@ -102,7 +102,7 @@ class KnownDescription:
 
     @cached_property
     def account(self) -> Description:
-        """Return the details of its links and joints."""
+        """The details of its links and joints."""
         from linkwright.panels.description_details import account
 
         return account(
@@ -115,26 +115,29 @@ class KnownDescription:
         )
 
     def changed_from(self, before: KnownDescription | None) -> DescriptionChanged:
-        """Return the links and joints that differ from the description before; none for a first one."""
+        """Return the links and joints that differ from the previous description; empty for a first one."""
         links = _changed(before.robot.links, self.robot.links) if before else []
         joints = _changed(before.robot.joints, self.robot.joints) if before else []
         return DescriptionChanged(self.display, self.revision, links, joints)
 
     def named_text(self, file: str) -> DescriptionText:
-        """Return one of its files, or the expanded text for an empty name; other files are refused."""
+        """Return the text of one of its files, or the expanded text for an empty name.
+
+        Files that do not belong to the description are refused.
+        """
         text = self.text if file == "" else self.texts.text(file)
         return DescriptionText(self.display, self.revision, file, text)
 
     def findings(self, finder: PackageFinder) -> InertiaFindings:
-        """Return the implausible masses; computed each time, because meshes may have changed."""
+        """Return the implausible masses; they are computed each time, because meshes may have changed."""
         from linkwright.panels.description_details import implausible
 
         return InertiaFindings(self.display, self.revision, implausible(self.robot, finder))
 
 
 def _changed(before: Mapping[str, Part], after: Mapping[str, Part]) -> list[str]:
-    """Return the links or joints that are new or different in another robot; their places in the text do not count."""
-    # Elements, which have the places, take no part in comparisons of the model.
+    """Return the links or joints that are new or different; their places in the text do not count."""
+    # Comparing model parts ignores their elements, which have the places.
     return [name for name, part in after.items() if before.get(name) != part]
 
 
@@ -142,10 +145,9 @@ _Question = AskDescription | AskDescriptionText | AskInertia | AskProvenance
 
 
 class DescriptionFeature(PageFeature):
-    """Answers questions about descriptions in order, in a thread.
+    """Answers pages' requests about descriptions in order, in a thread.
 
-    If a page repeats a question before it is answered, only the newest one is.
-
+    If a page repeats a request before it is answered, only the newest one is answered.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (AskDescription, AskDescriptionText, AskInertia, AskProvenance)
@@ -158,7 +160,7 @@ class DescriptionFeature(PageFeature):
         self._thinking = asyncio.Lock()
 
     def robot_changed(self) -> None:
-        """Notify pages of their robots that have changed."""
+        """Notify pages of the robots that have changed."""
         shown: set[str] = set()
         for manager in self.managers.all():
             for display in manager.robot_models():
@@ -171,7 +173,7 @@ class DescriptionFeature(PageFeature):
             del self._known[gone]
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Store the files with findings; their text is the one the findings refer to."""
+        """Store the texts of files with findings, as they were when the findings were made."""
         self._faulty = {
             diagnostic.source.name: diagnostic.source.text
             for diagnostic in diagnostics
@@ -179,7 +181,7 @@ class DescriptionFeature(PageFeature):
         }
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return the descriptions that pages can ask for; no link counts as changed."""
+        """Return the descriptions that pages can request, without changed links."""
         known = [self._look_at(display) for display in manager.robot_models()]
         return [
             DescriptionChanged(known_description.display, known_description.revision, [], [])
@@ -188,7 +190,7 @@ class DescriptionFeature(PageFeature):
         ]
 
     def receive(self, page: Page, message: _Question) -> None:
-        """Queue a question."""
+        """Queue a request."""
         about = message.file if isinstance(message, AskDescriptionText) else ""
         key = (page, f"{tag_of(message)} {message.display} {about}")
         if key in self._answers:
@@ -198,13 +200,13 @@ class DescriptionFeature(PageFeature):
         task.add_done_callback(lambda done: self._answers.pop(key) if self._answers.get(key) is done else None)
 
     def page_closed(self, page: Page) -> None:
-        """Forget its questions."""
+        """Drop the page's requests."""
         for (asking, _), task in list(self._answers.items()):
             if asking is page:
                 task.cancel()
 
     def close(self) -> None:
-        """Stop answering."""
+        """Stop answering requests."""
         for task in self._answers.values():
             task.cancel()
 
@@ -231,7 +233,7 @@ class DescriptionFeature(PageFeature):
             page.send(reply)
 
     def _look_at(self, display: RobotModelDisplay) -> KnownDescription | None:
-        """Return the known description that a display shows now."""
+        """Return the description that a display currently shows, with a new revision if it has changed."""
         robot, prefix = display.robot, display.properties.text("TF Prefix")
         known = self._known.get(display.id)
         if robot is None:
@@ -245,7 +247,7 @@ class DescriptionFeature(PageFeature):
 
 
 def _text(known: KnownDescription | None, faulty: dict[str, str], question: AskDescriptionText) -> DescriptionText:
-    """Return the text of a file; for one with findings the text they refer to, not that of the current robot."""
+    """Return the text of a file; for a file with findings, the text that they refer to."""
     file = question.file
     if file in faulty:
         return DescriptionText(question.display, known.revision if known else 0, file, faulty[file])
@@ -263,11 +265,11 @@ class DiagnosticsFeature(PageFeature):
         self._shown = Diagnostics([])
 
     def opening(self) -> list[ServerMessage]:
-        """Return the present findings."""
+        """Return the current findings."""
         return [self._shown]
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Show other findings; an empty list clears them."""
+        """Show new findings; an empty list clears them."""
         self._found = diagnostics
         self._shown = self._all()
         self.context.pages.publish(self._shown)
@@ -286,7 +288,7 @@ class DiagnosticsFeature(PageFeature):
 
 
 def _unseen(model: RobotModelDisplay) -> Diagnostic | None:
-    """Return the finding that none of the visuals of a robot can be drawn (VIEW207)."""
+    """Return the finding that no visual of a robot can be drawn (VIEW207); None if some can."""
     robot, problems = model.robot, model.file_problems
     if robot is None or not problems or not model.enabled or any(link.visuals for link in model.scene.links):
         return None
@@ -299,7 +301,7 @@ def _unseen(model: RobotModelDisplay) -> Diagnostic | None:
 
 
 def item_of(diagnostic: Diagnostic) -> DiagnosticItem:
-    """Return a diagnostic for the page, with the line of source that it points to."""
+    """Return a diagnostic in the form for pages, with the source line that it points to."""
     span, source = diagnostic.span, diagnostic.source
     excerpt = source.line(span.line) if span and source and source.name == span.file else ""
     return DiagnosticItem(

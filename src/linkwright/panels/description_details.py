@@ -1,6 +1,6 @@
-"""The details of a description for pages: links and joints with their places, texts, implausible masses.
+"""Details of a description for pages: links and joints with their places, texts, implausible masses.
 
-It is imported when the first page asks.
+It is imported when the first page asks for details.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ _MOST_CALLS = 20
 
 
 class Places:
-    """The places of the links and joints of one description.
+    """Looks up the places of the links and joints of one description.
 
     Args:
-        text: the description, expanded.
+        text: the expanded description.
     """
 
     def __init__(self, text: str) -> None:
@@ -51,13 +51,13 @@ class Places:
         try:
             document, _ = parse_as_urdfdom(text, _EXPANDED)
         except LinkwrightError:
-            return  # a robot was made of it, so that this does not happen
+            return  # should not happen: a robot was read from this text
         for element in document.root.elements():
             key = (element.tag, element.attributes.get("name", ""))
             self._expanded.setdefault(key, element)
 
     def of(self, tag: str, name: str, element: Element | None) -> Written:
-        """Return the place of a link or joint; `element` is the one that the robot was read from."""
+        """Return the place of a link or joint; `element` is the element from which it was read."""
         twin = self._expanded.get((tag, name))
         expanded = None if twin is None else _range(twin)
         if element is None or element.source is None or element.source.name.startswith("<"):
@@ -66,7 +66,7 @@ class Places:
 
 
 def _calls(element: Element) -> Iterator[CallSite]:
-    """Return the calls and includes on the way to an element, innermost first, one for each place."""
+    """Yield the macro calls and includes that produced an element, innermost first, without duplicates."""
     innermost = element.origin
     if not isinstance(innermost, Frame):
         return
@@ -86,15 +86,15 @@ def _range(element: Element) -> SourceRange | None:
 
 
 def account(robot: Robot, text: str, files: list[str], *, display: str, revision: int, prefix: str) -> Description:
-    """Return all details of a robot except its shapes, which pages have already.
+    """Return all details of a robot except its shapes, which pages already have.
 
-    Takes as long as reading the text once more does.
+    This takes as long as reading the text again.
 
     Args:
-        robot: read from the text.
-        text: the description, expanded.
-        files: the files that the text was made from.
-        display: the RobotModel display that shows it.
+        robot: the robot that was read from the text.
+        text: the expanded description.
+        files: the files from which the text was made.
+        display: the ID of the RobotModel display that shows it.
         revision: counts the descriptions of the display.
         prefix: the display's TF Prefix.
     """
@@ -160,7 +160,7 @@ def _finite(number: float) -> float | None:
 
 
 def _unit(axis: tuple[float, float, float]) -> list[float]:
-    """Return the axis with length one, or zeros for one that is not valid."""
+    """Return the axis with length 1, or zeros if it is not valid."""
     length = float(np.linalg.norm(axis))
     if not (isfinite(length) and length > 0):
         return [0.0, 0.0, 0.0]
@@ -170,12 +170,12 @@ def _unit(axis: tuple[float, float, float]) -> list[float]:
 class SourceTexts:
     """The files of one description, and no others.
 
-    The texts of its elements are in memory, as they were when the description was made. A file that gave only values,
-    such as one of YAML, is read on request.
+    The texts of its elements are in memory, as they were when the description was made. A file that contributed only
+    values, such as a YAML file, is read on request.
 
     Args:
         root: the root element of the description.
-        files: the files it was made from, the main one first, as far as that is known.
+        files: the files from which it was made, the main one first, as far as they are known.
     """
 
     def __init__(self, root: Element | None, files: Iterable[Path]) -> None:
@@ -184,11 +184,11 @@ class SourceTexts:
 
     @property
     def names(self) -> list[str]:
-        """The files, the main one first."""
+        """The names of the files, the main one first."""
         return list(dict.fromkeys([*self._files, *self._read]))
 
     def text(self, name: str) -> str | None:
-        """Return the text of a file, or None if it is not one of the description's, or is gone."""
+        """Return the text of a file; None if it does not belong to the description, or no longer exists."""
         source = self._read.get(name)
         if source is not None:
             return source.text
@@ -202,7 +202,7 @@ class SourceTexts:
 
 
 def _sources(root: Element | None) -> dict[str, SourceText]:
-    """Return the texts with the elements, and with the calls that produced them."""
+    """Return the texts that contain the elements, and the calls that produced them, by name."""
     found: dict[str, SourceText] = {}
     known: set[int] = set()
     for element in root.walk() if root is not None else ():
@@ -222,7 +222,7 @@ def _sites(element: Element, known: set[int]) -> Iterator[SourceText | None]:
 
 
 def implausible(robot: Robot, finder: PackageFinder) -> list[InertiaFinding]:
-    """Return the findings of the rules about masses and inertias, by link; see `linkwright.lint.by_link`."""
+    """Return the findings about masses and inertias, each with its link; see `linkwright.lint.by_link`."""
     return [
         InertiaFinding(link, finding.code, finding.message, finding.hint or "")
         for link, finding in inertia_findings(robot, finder)

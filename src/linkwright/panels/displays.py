@@ -1,4 +1,4 @@
-"""Displays, for pages: setting properties, selections, and the content of the Add dialog."""
+"""Displays for pages: setting properties, selections, and the content of the Add dialog."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class DisplaysFeature(PageFeature):
         self._sizes: WeakKeyDictionary[ViewerDisplay, dict[Page, ImageSize]] = WeakKeyDictionary()
 
     def receive(self, page: Page, message: SetProperty | MeshStatus | MarkerFeedback | ImageSize) -> None:
-        """Set a property, or forward the message to its display, unless that was removed meanwhile."""
+        """Set a property, or forward the message to its display; ignored if the display was removed."""
         manager = self.managers.of(page)
         if isinstance(message, SetProperty):
             manager.set_property(page, message.id, message.value)
@@ -38,13 +38,13 @@ class DisplaysFeature(PageFeature):
                 display.receive(message)
 
     def page_closed(self, page: Page) -> None:
-        """Forget the panels of a page; images fit those of the others."""
+        """Drop the panel sizes of a page, so that images fit the panels of the other pages."""
         for display, sizes in list(self._sizes.items()):
             if sizes.pop(page, None) is not None:
                 self._send_size(display)
 
     def _send_size(self, display: ViewerDisplay) -> None:
-        """Send a display the size of the largest panel that shows it, or zero."""
+        """Send a display the size of the largest panel that shows it; zero if there is none."""
         sizes = self._sizes[display].values()
         width = max((size.width for size in sizes), default=0)
         height = max((size.height for size in sizes), default=0)
@@ -52,10 +52,10 @@ class DisplaysFeature(PageFeature):
 
 
 class PointsFeature(PageFeature):
-    """Answers questions about points: pages have only their positions and colours."""
+    """Sends the fields of selected points; pages themselves have only positions and colours."""
 
     def receive(self, page: Page, message: AskPoint) -> None:
-        """Answer, if the point is still shown."""
+        """Send the fields of a point, if it is still shown."""
         from linkwright.rviz.displays.point_clouds import CloudDisplay
 
         display = self.managers.of(page).display(message.display)
@@ -67,9 +67,9 @@ class PointsFeature(PageFeature):
 
 
 def choices(node: Node) -> DisplayChoices:
-    """Return all classes of displays that can be added, groups last, and the topics of other nodes, by name.
+    """Return all display classes that can be added, groups last, and the topics of other nodes by name.
 
-    It imports every display; so pages ask for it when the user opens the dialog.
+    It imports every display, so pages request it only when the user opens the dialog.
     """
     displays = sorted(display_classes(), key=lambda display: (display.CLASS == GROUP, display.CLASS))
     by_message: dict[str, list[str]] = {}
@@ -88,7 +88,7 @@ def choices(node: Node) -> DisplayChoices:
 
 
 def show_topic(display: ViewerDisplay, topic: str) -> None:
-    """Set the topic of a new display, with the quality of service that its publishers offer.
+    """Set the topic of a new display, with the QoS that its publishers offer.
 
     RViz uses its defaults, which do not receive a sensor's Best Effort messages.
     """

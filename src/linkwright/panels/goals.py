@@ -1,4 +1,4 @@
-"""Goals that tools send to actions."""
+"""Send goals of tools to actions."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ class GoalSender:
     """Sends poses to an action whose goals are poses, such as nav2's ``navigate_to_pose``.
 
     Args:
-        node: to send with.
+        node: the node that owns the action client.
         name: the name of the action.
-        kind: its type.
+        kind: the type of the action.
     """
 
     def __init__(self, node: Node, name: str, kind: str) -> None:
@@ -26,7 +26,7 @@ class GoalSender:
         self._client = ActionClient(node, kind, name)
 
     def send(self, pose: Any, refused: Callable[[str], None]) -> None:
-        """Send a pose; logs an error if no server accepts it.
+        """Send a pose as a goal; log an error if no server accepts it.
 
         Args:
             pose: a geometry_msgs/msg/PoseStamped.
@@ -48,5 +48,5 @@ class GoalSender:
             refuse(f"{self._name} action server is not available. Is the initial pose set?")
 
     def destroy(self) -> None:
-        """Destroy the client."""
+        """Destroy the action client."""
         self._client.destroy()

@@ -1,4 +1,4 @@
-"""The page's Joints panel: shows and moves the sliders of a joint_state_publisher_gui."""
+"""The page's Joints panel, which shows and moves the sliders of a joint_state_publisher_gui."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class NodeWithSliders(RunningNode, Protocol):
 
 
 class JointsFeature(PageFeature):
-    """Connects the page's Joints panel with the panel that moves the joints, once there is one."""
+    """Connects the page's Joints panel with the node's panel that moves the joints, once there is one."""
 
     RECEIVES: ClassVar[tuple[type, ...]] = (SetJoint, SetJoints, RandomizeJoints, CenterJoints)
 
@@ -48,7 +48,7 @@ class JointsFeature(PageFeature):
         self._soon: asyncio.TimerHandle | None = None
 
     def attach(self, panel: JointPanel | None) -> None:
-        """Show a panel in place of the one before; None closes it in the page."""
+        """Show a panel instead of the previous one; None closes the panel in the page."""
         if self._unsubscribe is not None:
             self._unsubscribe()
         if self._soon is not None:
@@ -66,7 +66,7 @@ class JointsFeature(PageFeature):
         return [self._controls(self._panel), JointPositions(self._panel.positions())]
 
     def receive(self, page: Page, message: SetJoint | SetJoints | RandomizeJoints | CenterJoints) -> None:
-        """Handle a request. Unknown joints, and those that mimic another, are ignored."""
+        """Handle a request. Unknown joints, and joints that mimic another, are ignored."""
         panel = self._panel
         if panel is None:
             return
@@ -81,7 +81,7 @@ class JointsFeature(PageFeature):
             panel.set_position(message.name, message.position)
 
     def close(self) -> None:
-        """Release the panel."""
+        """Detach from the panel."""
         self.attach(None)
 
     def _panel_changed(self, kind: str) -> None:

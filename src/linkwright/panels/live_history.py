@@ -1,4 +1,4 @@
-"""The messages of the last minutes, stored to be shown again to the viewer's own subscriptions."""
+"""The messages of the last minutes, stored so that the viewer's own subscriptions can receive them again."""
 
 from __future__ import annotations
 
@@ -29,18 +29,18 @@ _MOST_FRESH = 16
 
 
 class LiveHistory:
-    """Stores messages of the viewer's subscriptions, and shows them at another time than the present.
+    """Stores the messages of the viewer's subscriptions, and shows them at a past time.
 
-    It adds no subscriptions. While another time is shown, new messages are stored but not shown.
+    It adds no subscriptions. While a past time is shown, new messages are stored but not shown.
 
     Args:
         context: the context of the viewer.
-        most_bytes: the most bytes that are stored.
+        most_bytes: the maximum number of stored bytes.
         failed: called with an error of the playback.
 
     Attributes:
         live: whether the present is shown.
-        on_reset: called when time goes back, so that displays forget what they show.
+        on_reset: called when time goes back, so that displays drop what they show.
         changed: called when `live` has changed.
     """
 
@@ -79,12 +79,12 @@ class LiveHistory:
 
     @property
     def has_playback(self) -> bool:
-        """Whether another time than the present was ever shown."""
+        """Whether a past time was ever shown."""
         return "playback" in self.__dict__
 
     @property
     def span_ns(self) -> tuple[int, int]:
-        """The times of the oldest and the newest message, nanoseconds since the epoch; now, if there is none."""
+        """The times of the oldest and the newest message, or the present; nanoseconds since the epoch."""
         with self._lock:
             if self._stored is not None:
                 return self._stored.start_ns, self._stored.end_ns
@@ -93,11 +93,11 @@ class LiveHistory:
 
     @property
     def size(self) -> int:
-        """The bytes that it takes, without the newest messages."""
+        """The size of the stored messages in bytes, without the newest ones."""
         return 0 if self._stored is None else self._stored.size
 
     def freeze(self) -> None:
-        """Pause the display while messages are still stored."""
+        """Pause the displays while messages are still stored."""
         if not self.live:
             return
         with self._lock:
@@ -111,17 +111,18 @@ class LiveHistory:
         self.changed()
 
     def go_live(self) -> None:
-        """Show the present again."""
+        """Return to showing the present."""
         if self.live:
             return
         self.playback.pause()
         self._context.graph_changes.unwatch(self._review)
         self._context.held_time.release(self._context.node.get_clock())
-        # A turn of the loop later: listeners to the time jump drop the past data first, then the present is shown.
+        # Wait for the next iteration of the loop: listeners to the time jump must drop past data before the present is
+        # shown.
         asyncio.get_running_loop().call_soon(self._show_present)
 
     def topics(self) -> dict[str, SavedTopic]:
-        """Return the topics whose messages are stored, with the profiles of their present publishers."""
+        """Return the topics whose messages are stored, with the QoS profiles of their current publishers."""
         from linkwright.bag.saving import SavedTopic
 
         graph = self._context.node.graph
@@ -132,14 +133,14 @@ class LiveHistory:
         return found
 
     def part(self, topics: Mapping[str, SavedTopic], start_ns: int, end_ns: int, *, simulated: bool) -> list[Recorded]:
-        """Return the stored messages between two times, with those that its beginning needs, as in a recording.
+        """Return the stored messages between two times, and earlier ones that the start state requires.
 
         Args:
             topics: see `topics`.
             start_ns: the earlier time, nanoseconds since the epoch.
-            end_ns: the later time.
-            simulated: whether messages get the times of ``/clock``; those from before the simulation's last reset are
-                then left out, because time starts again there.
+            end_ns: the later time, nanoseconds since the epoch.
+            simulated: whether messages get the times of ``/clock``. Messages from before the simulation's last reset
+                are then omitted, because time starts again at the reset.
         """
         from linkwright.bag.saving import in_simulated_time, last_reset_ns
 
@@ -154,7 +155,10 @@ class LiveHistory:
         return in_simulated_time(messages)
 
     def before(self, topics: Collection[str], length_ns: int, most_bytes: int) -> list[Recorded]:
-        """Return the messages of some topics in the time up to the one that is shown; none if they are too large."""
+        """Return the messages of some topics in a period that ends at the displayed time.
+
+        The list is empty if the messages exceed `most_bytes`.
+        """
         if not self.live:
             return self.playback.before(topics, length_ns, most_bytes)
         history = self.history
@@ -185,7 +189,7 @@ class LiveHistory:
         return frozenset(subscription.name for subscription in self._subscriptions()) - {CLOCK_TOPIC}
 
     def publish_time(self, stamp_ns: int) -> None:
-        """Set the viewer's clock to a time, or publish the simulated time of then."""
+        """Set the viewer's clock to a time, or publish the simulated time that was current then."""
         if self.live:
             return
         self._went_back = self._went_back or stamp_ns < self.playback.position_ns
@@ -201,7 +205,10 @@ class LiveHistory:
     # ----------------------------------------------------------------------------------------------------------
 
     def _intake(self, subscription: Subscription[Any], message: Any) -> bool:
-        """Store a message, once for all subscriptions of its topic; returns whether to deliver it. Thread-safe."""
+        """Store a message, once per topic, and return whether to deliver it to the subscription.
+
+        Thread-safe.
+        """
         topic = subscription.name
         keeper = self._recorded.get(topic)
         if keeper is None or keeper.destroyed:
@@ -210,14 +217,17 @@ class LiveHistory:
             return self.live
         if type(message) is QueuedMessage:
             message = message.message
-        with self._lock:  # so that a message that arrives on the return to the present is shown once, and in order
+        with self._lock:  # so that messages that arrive during the return to the present are shown once and in order
             self._fresh.append((topic, self._now_ns(), message))
             if not self.live or len(self._fresh) >= _MOST_FRESH:
                 self._written()
             return self.live
 
     def _written(self) -> History:
-        """Return the history with the newest messages appended; these never change, so that this can wait."""
+        """Append the newest messages to the history, and return it.
+
+        Messages never change after they have arrived, so appending them can be deferred.
+        """
         if self._stored is None:
             from linkwright.bag.history import History
 
@@ -229,9 +239,10 @@ class LiveHistory:
         return history
 
     def _store(self, history: History, topic: str, at_ns: int, message: Any, *, thins: bool) -> None:
-        """Store a message; with `thins`, briefly if it repeats those before: playback needs each of these.
+        """Store a message; with `thins`, a message with the same content as before is stored compactly.
 
-        A failure is logged, so that one message does not take the others with it.
+        While a past time is shown, playback needs every message, so none are thinned out. A failure is logged, so that
+        one message does not affect the others.
         """
         from linkwright.bag.stillness import content_of
 
@@ -251,7 +262,7 @@ class LiveHistory:
                 subscription.enqueue(data, MessageInfo(stamp_ns, stamp_ns))
 
     def _review(self) -> None:
-        """Give new subscriptions the state at the time that is shown."""
+        """Give new subscriptions the state at the displayed time."""
         fresh = [subscription for subscription in self._subscriptions() if subscription not in self._known]
         if self.live or not fresh:
             return

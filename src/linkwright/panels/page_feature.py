@@ -1,12 +1,11 @@
-"""Page features, which handle pages' requests besides displays: their base class, and when they are created.
+"""Page features, which handle pages' requests that are not about displays: their base class and their creation.
 
-They are found through the entry points ``linkwright.page_features``.
+Most are found through the entry points ``linkwright.page_features`` and are created with the viewer.
 
-Features that are created on demand: when a page asks for one, or one of their topics is published.
-
-Each is declared by an `OnDemand`, which names its class; the class's module is imported then. Until then pages receive
-a default message in its place. They are found through the entry points ``linkwright.page_features_on_demand``, whose
-values are modules with a tuple ``ON_DEMAND``.
+Others are created on demand: when a page asks for one, or when one of their topics is published. Each is declared by an
+`OnDemand`, which names its class, so that the module of the class is imported only then. Until then pages receive a
+default message instead. They are found through the entry points ``linkwright.page_features_on_demand``, whose values
+are modules with a tuple ``ON_DEMAND``.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ class FeatureHost(Protocol):
 
     Attributes:
         context: the viewer's node, files and pages.
-        managers: the configurations that pages see: one that they share, and those of single pages.
+        managers: the configurations that pages show: a shared one, and those of single pages.
         live: the history of the last minutes; None if there is none.
     """
 
@@ -46,25 +45,26 @@ class FeatureHost(Protocol):
     live: LiveHistory | None
 
     def add_feature(self, cls: type[F], receives: Iterable[str] = ()) -> F:
-        """Return the feature of a class, which receives all events from now on; the existing one, if any.
+        """Return the feature of a class, and create it if it does not exist yet.
+
+        From then on it receives all events.
 
         Args:
-            cls: its class.
-            receives: addresses of messages that it receives beside those that its class names.
+            cls: the class of the feature.
+            receives: addresses of messages that it handles in addition to those that its class names.
         """
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return the messages of all features about a configuration."""
+        """Return all features' messages about a configuration."""
 
     def opening_messages(self, manager: VisualizationManager) -> tuple[list[ServerMessage], list[Payload]]:
-        """Return messages for a page that begins to see a configuration, the frame table last; and binary frames."""
+        """Return the messages (frame table last) and binary frames for a page that opens a configuration."""
 
 
 class PageFeature:
     """Handles some of the messages of pages.
 
-    A feature must cost nothing while no page uses it: keep what a page subscribed to per page, and drop it in
-    `page_closed`.
+    A feature must cost nothing while no page uses it: store subscriptions per page, and drop them in `page_closed`.
 
     Args:
         viewer: the viewer that it belongs to.
@@ -83,47 +83,47 @@ class PageFeature:
 
     @property
     def receives(self) -> tuple[str, ...]:
-        """The messages of pages that this object handles, as ``module:class``."""
+        """The messages of pages that this feature handles, as ``module:class``."""
         return tuple(map(address_of, self.RECEIVES))
 
     def start(self) -> None:
-        """Start: the viewer is listening."""
+        """Start the feature; called when the viewer starts."""
 
     def opening(self) -> list[ServerMessage]:
-        """Return messages for a page that opens now."""
+        """Return messages for a page that has just opened."""
         return []
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return messages about a configuration, for a page that opens, or for all pages after a file was opened."""
+        """Return messages about a configuration, for a new page, or for all pages when a file was opened."""
         return []
 
     def edited(self, manager: VisualizationManager) -> None:
         """Handle a change of undo, redo or the unsaved state of a configuration."""
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Handle the end of a manager: drop its data."""
+        """Drop the data of a manager that was closed."""
 
     def robot_changed(self) -> None:
-        """Handle another robot of a display."""
+        """Handle a display's change to another robot."""
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Handle new findings on the description; an empty list if it is in order."""
+        """Handle new findings on the description; the list is empty if there are none."""
 
     def recording_shown(self) -> None:
-        """Handle a recording that is shown: requests to robots and simulations are refused from now on."""
+        """Switch to showing a recording: from now on, refuse requests to robots and simulations."""
 
     def receive(self, page: Page, message: Any) -> None:
-        """Handle a request, a message of one of its classes."""
+        """Handle a request, whose class is one of those that the feature receives."""
 
     def page_closed(self, page: Page) -> None:
-        """Handle the end of a page."""
+        """Drop the data of a page that was closed."""
 
     def keep_unsaved(self) -> list[Diagnostic]:
-        """Store unsaved edits of pages, before the program ends; returns the findings about it."""
+        """Store pages' unsaved edits before the program ends, and return the findings about that."""
         return []
 
     def close(self) -> None:
-        """Stop for good."""
+        """Release everything; called when the viewer closes."""
 
 
 GROUP = "linkwright.page_features"
@@ -131,7 +131,7 @@ GROUP = "linkwright.page_features"
 
 
 def make_features(viewer: FeatureHost) -> list[PageFeature]:
-    """Return a feature of each kind; one of another package that cannot be made is logged, and left out."""
+    """Create all features; log and skip those of other packages that fail."""
     made: list[PageFeature] = []
     for name, entry in extensions(GROUP).items():
         try:
@@ -153,14 +153,15 @@ ON_DEMAND_GROUP = "linkwright.page_features_on_demand"
 
 @dataclass(frozen=True, eq=False)
 class OnDemand:
-    """A feature that is created on demand.
+    """The declaration of a feature that is created on demand.
 
     Attributes:
         feature: its class, as ``module:class``.
-        receives: the classes of messages that it handles, as ``module:class``: a module is imported with the first.
+        receives: the classes of messages that it handles, as ``module:class``; the first such message imports the
+            module.
         topics: the topics whose publishers make it necessary.
         until: the message that pages receive while the feature does not exist.
-        refuses_recordings: whether it must exist beside a recording that is shown, to refuse requests.
+        refuses_recordings: whether it must exist while a recording is shown, to refuse requests.
     """
 
     feature: str
@@ -171,12 +172,12 @@ class OnDemand:
 
 
 def messages(module: str, *names: str) -> tuple[str, ...]:
-    """Return the addresses of classes of messages that a module defines."""
+    """Return the addresses of message classes that a module defines."""
     return tuple(f"{module}:{name}" for name in names)
 
 
 def _declared(logger: Logger) -> Iterator[OnDemand]:
-    """Yield the declarations of all packages; a module that cannot be imported is logged, and left out."""
+    """Yield the declarations of all packages; log and skip modules that cannot be imported."""
     for name, entry in extensions(ON_DEMAND_GROUP).items():
         try:
             found: tuple[OnDemand, ...] = entry.load().ON_DEMAND
@@ -189,7 +190,10 @@ def _declared(logger: Logger) -> Iterator[OnDemand]:
 
 
 class OnDemandFeatures(PageFeature):
-    """Creates each of them once, and forwards the message that asked for it; later messages go to it directly."""
+    """Creates features on demand, and forwards the message that asked for one.
+
+    Each feature is created once and receives later messages directly.
+    """
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -203,11 +207,11 @@ class OnDemandFeatures(PageFeature):
 
     @property
     def receives(self) -> tuple[str, ...]:
-        """The messages of all features that are not created yet."""
+        """The messages of all features that are created on demand."""
         return tuple(self._by_message)
 
     def opening(self) -> list[ServerMessage]:
-        """Return the messages of features that do not exist yet; watches their topics while there are pages."""
+        """Return the messages of features that do not exist yet, and begin to watch their topics."""
         if not self._listening and self._asleep:
             self._listening = True
             self.context.graph_changes.watch(self._review)
@@ -220,18 +224,18 @@ class OnDemandFeatures(PageFeature):
         self._create(self._by_message[address_of(type(message))]).receive(page, message)
 
     def recording_shown(self) -> None:
-        """Create the features that refuse requests beside a recording; they are notified next."""
+        """Create the features that refuse requests while a recording is shown; they are notified next."""
         for feature in self._declared:
             if feature.refuses_recordings:
                 self._create(feature)
 
     def page_closed(self, page: Page) -> None:
-        """Stop watching after the last page."""
+        """Stop watching topics when the last page has closed."""
         if self._listening and len(self.context.pages) == 0:
             self._stop()
 
     def close(self) -> None:
-        """Create no more features."""
+        """Stop watching topics."""
         self._stop()
 
     def _stop(self) -> None:
@@ -239,7 +243,7 @@ class OnDemandFeatures(PageFeature):
         self.context.graph_changes.unwatch(self._review)
 
     def _review(self) -> None:
-        """Create the features whose topics are published now."""
+        """Create the features whose topics have publishers."""
         for topic, feature in list(self._asleep.items()):
             if self.context.node.count_publishers(topic):
                 self._create(feature)

@@ -1,6 +1,6 @@
-"""Recording from pages: one recording at a time, which all pages see, and the last minutes as a file.
+"""Recording from pages: one recording at a time, which all pages see, and saving the last minutes.
 
-Files go into the program's working directory, under names that the program chooses; pages cannot choose them.
+Files are written to the program's working directory, under names that the program chooses; pages cannot choose them.
 """
 
 from __future__ import annotations
@@ -46,11 +46,11 @@ _MOST_FILES = 20
 
 
 class RecordingFeature(PageFeature):
-    """Records topics for pages. It continues when its page is closed, and ends well when the program does.
+    """Records topics for pages. It continues when its page is closed, and is finished properly when the program ends.
 
     Attributes:
         folder: the folder for recordings.
-        left_free: bytes of the disk to leave free.
+        left_free: the number of bytes to leave free on the disk.
     """
 
     def __init__(self, viewer: FeatureHost) -> None:
@@ -67,7 +67,7 @@ class RecordingFeature(PageFeature):
         self._loop = asyncio.get_running_loop()
 
     def recording_shown(self) -> None:
-        """Refuse to record."""
+        """Refuse to record from now on."""
         self._possible = False
         self._publish()
 
@@ -76,7 +76,7 @@ class RecordingFeature(PageFeature):
         return [self._state()]
 
     def receive(self, page: Page, message: RecordTopics | StopRecording | SaveMinutes) -> None:
-        """Carry out a request."""
+        """Handle a request."""
         if not self._possible:
             return
         match message:
@@ -97,7 +97,7 @@ class RecordingFeature(PageFeature):
         if self._timer is not None:
             self._timer.cancel()
 
-    # --- what topics carry -------------------------------------------------------------------------------------
+    # --- recording topics --------------------------------------------------------------------------------------
 
     def _begin(self, topics: list[str]) -> None:
         from linkwright.bag import BagWriter, Recorder, TopicSelection
@@ -121,7 +121,7 @@ class RecordingFeature(PageFeature):
         self._publish_later()
 
     def _guarded(self, callback: Callable[..., object]) -> Callable[..., object]:
-        """Return a callback for the recorder's node that ends the recording when a write fails."""
+        """Wrap a callback of the recorder's node so that a failed write ends the recording."""
 
         def call(*arguments: Any) -> None:
             try:
@@ -156,7 +156,7 @@ class RecordingFeature(PageFeature):
             self._refused([_finding(phrase("no messages arrived, so there is no recording"))])
         self._publish()
 
-    # --- the last minutes --------------------------------------------------------------------------------------
+    # --- saving the last minutes -------------------------------------------------------------------------------
 
     def _save(self, live: LiveHistory, start: float | None, end: float | None) -> None:
         history = live.history
@@ -191,7 +191,7 @@ class RecordingFeature(PageFeature):
     def _written(self, task: asyncio.Task[None]) -> None:
         self._saving = self._saved = None
         error = None if task.cancelled() else task.exception()
-        if error is not None:  # a bug must not leave pages waiting
+        if error is not None:  # report even unexpected errors, or pages would wait forever
             self.context.node.get_logger().error(f"The last minutes were not saved: {error!r}")
             self._refused([_finding(phrase("the last minutes were not saved: {reason}", reason=foreign(repr(error))))])
         self._publish()
@@ -208,10 +208,10 @@ class RecordingFeature(PageFeature):
         return path
 
     def _check_room(self, needed: int) -> None:
-        """Check that the disk has space left.
+        """Check that the disk has enough space left.
 
         Raises:
-            LinkwrightError: BAG110, there is not enough.
+            LinkwrightError: BAG110, there is not enough space.
         """
         if self._free() < self.left_free + needed:
             raise LinkwrightError(
@@ -227,7 +227,7 @@ class RecordingFeature(PageFeature):
             )
 
     def _free(self) -> int:
-        """Return the free bytes of the recordings' disk; infinite if unknown, as writing then reports the error."""
+        """Return the free bytes of the recordings' disk; infinite if unknown, since writing reports errors."""
         try:
             return shutil.disk_usage(self.folder).free
         except OSError:
@@ -251,7 +251,7 @@ class RecordingFeature(PageFeature):
         self._publish()
 
     def _refused(self, diagnostics: Iterable[Diagnostic]) -> None:
-        """Show an error in pages and in the terminal."""
+        """Show errors in pages and in the terminal."""
         for diagnostic in diagnostics:
             self.context.report(diagnostic)
         self._problem = in_one_line(diagnostics)
@@ -286,7 +286,7 @@ class RecordingFeature(PageFeature):
 
 
 class _Running:
-    """A recording in progress; `clock` is that of the simulation, if there is one."""
+    """A recording in progress. `clock` is the clock of the simulation, if there is one."""
 
     def __init__(
         self, node: Node, writer: BagWriter, recorder: Recorder, jumps: JumpHandle, clock: Clock | None
@@ -301,12 +301,12 @@ class _Running:
 
     @property
     def length(self) -> float:
-        """Seconds since the start."""
+        """The seconds since the start."""
         return time.monotonic() - self._began
 
     @property
     def simulated(self) -> float | None:
-        """Simulated seconds since the recording began; None if there is no simulated time, or after its reset."""
+        """The simulated seconds since the start; None if time is not simulated, or was reset."""
         if self._clock is None:
             return None
         passed = (self._clock.now().nanoseconds - self._simulated_from) / 1e9

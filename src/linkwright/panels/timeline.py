@@ -48,7 +48,7 @@ _CLOCK_PERIOD = 0.1
 
 @dataclass(slots=True)
 class _Since:
-    """The start of elapsed times, nanoseconds."""
+    """The times from which elapsed times are counted, nanoseconds."""
 
     ros: int
     wall: int
@@ -57,7 +57,8 @@ class _Since:
 class TimeFeature(PageFeature):
     """The Time panel of pages.
 
-    Clocks that run as the wall clock does are sent once, and pages count on; others are sent while they change.
+    A clock that runs at the speed of the wall clock is sent once, and pages advance it themselves. Other clocks are
+    sent while they change.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (SetTime, ResetTime, WatchClock)
@@ -71,21 +72,21 @@ class TimeFeature(PageFeature):
         self._loop = asyncio.get_running_loop()
 
     def start(self) -> None:
-        """Reset time whenever simulated time goes back, as RViz does."""
+        """Begin to watch the clock: when simulated time jumps back, everything is reset, as in RViz."""
         threshold = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
         self._jumps = self.context.node.get_clock().create_jump_callback(threshold, post_callback=self._jumped)
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return the state of time."""
+        """Return the state of the Time panel."""
         self._begin(manager)
         return [_state(manager)]
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Forget the start of its time."""
+        """Drop the start of the manager's elapsed times."""
         self._since.pop(manager, None)
 
     def receive(self, page: Page, message: Any) -> None:
-        """Carry out a request."""
+        """Handle a request."""
         manager = self.managers.of(page)
         if isinstance(message, SetTime):
             manager.set_time(paused=message.paused, mode=message.mode, source=message.source)
@@ -100,7 +101,7 @@ class TimeFeature(PageFeature):
                 self.page_closed(page)
 
     def page_closed(self, page: Page) -> None:
-        """Stop sending the page clocks."""
+        """Stop sending clocks to the page."""
         self._watching.pop(page, None)
 
     def close(self) -> None:
@@ -114,7 +115,7 @@ class TimeFeature(PageFeature):
 
     def _begin(self, manager: VisualizationManager) -> _Since:
         known = self._since.get(manager)
-        if known is None or known.ros == 0:  # simulated time is zero until it is published, and elapses from then on
+        if known is None or known.ros == 0:  # simulated time is 0 until it is first published; start counting then
             now = manager.time.now_ns()
             known = self._since[manager] = _Since(now, time.time_ns() if known is None else known.wall)
         return known
@@ -134,7 +135,7 @@ class TimeFeature(PageFeature):
             for manager in self.managers.all():
                 self._reset(manager)
 
-        # A message of /clock moves the clock, in any thread.
+        # Messages of /clock may set the clock in any thread.
         self._loop.call_soon_threadsafe(reset)
 
     def _publish_all(self) -> None:
@@ -143,7 +144,7 @@ class TimeFeature(PageFeature):
         self._tick()
 
     def _tick(self) -> None:
-        """Send the clocks to each page that watches them, unless it counts them itself."""
+        """Send the clocks to each page that watches them and cannot advance them itself."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
@@ -188,12 +189,12 @@ _CAUGHT_UP_NS = 100_000_000
 
 
 class TimelineFeature(PageFeature):
-    """Shows pages the position in a recording, and controls its playback for them.
+    """Shows pages the position in a recording, and controls playback for them.
 
     Without a recording or a live history it does nothing. A recording begins to play when the first page opens.
 
     Attributes:
-        jumped: called when the time that is shown jumps.
+        jumped: functions that are called when the displayed time jumps.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (Play, SeekTime, StepTime, SetPlayback, GoLive)
@@ -214,7 +215,7 @@ class TimelineFeature(PageFeature):
         self._loop = asyncio.get_running_loop()
 
     def attach(self, playback: Playback, bag: BagReader) -> None:
-        """Show pages a recording; `failed` is to be called if it cannot be read."""
+        """Show pages a recording; call `failed` if it cannot be read."""
         from linkwright.bag.publishing import missing_type_findings
 
         counts = bag.counts(_PARTS)
@@ -239,20 +240,24 @@ class TimelineFeature(PageFeature):
         self._changed()
 
     def keep(self, most_bytes: int) -> LiveHistory:
-        """Store messages of the last minutes, up to so many bytes, for pages; returns the history."""
+        """Begin to store the messages of the last minutes, and return their history.
+
+        Args:
+            most_bytes: the maximum size of the stored messages.
+        """
         self._live = LiveHistory(self.context, most_bytes, self.failed)
         self._live.on_reset = self._reset
         self._live.changed = self._changed
         return self._live
 
     def failed(self, error: LinkwrightError) -> None:
-        """Show an error: the rest of the recording cannot be read."""
+        """Show the error that makes the rest of the recording unreadable."""
         self._problem = in_one_line(error.diagnostics)
         for diagnostic in error.diagnostics:
             self.context.report(diagnostic)
 
     def opening(self) -> list[ServerMessage]:
-        """Return the recording, and the position in it."""
+        """Return the recording and the position in it."""
         playback = self._recorded
         if self._live is not None:
             extent = self._extent(self._live)
@@ -267,7 +272,7 @@ class TimelineFeature(PageFeature):
         return [self._timeline, self._playhead(playback)]
 
     def receive(self, page: Page, message: Play | SeekTime | StepTime | SetPlayback | GoLive) -> None:
-        """Carry out a request."""
+        """Handle a request."""
         from linkwright.bag.playback import FASTEST, SLOWEST
 
         playback = self._recorded if self._live is None else self._live.playback
@@ -285,7 +290,8 @@ class TimelineFeature(PageFeature):
                 playback.play() if playing else playback.pause()
             case SeekTime(position) if isfinite(position):
                 start = playback.start_ns
-                # Relative to the start, because a float of seconds since the epoch is off by a tenth of a microsecond.
+                # Compute relative to the start: a float of seconds since the epoch is inexact by a tenth of a
+                # microsecond.
                 playback.seek(start + round((position - start / NANOSECONDS_PER_SECOND) * NANOSECONDS_PER_SECOND))
             case StepTime(forward, topic):
                 playback.step(forward, topic)
@@ -294,12 +300,12 @@ class TimelineFeature(PageFeature):
                 playback.set_loop(loop)
 
     def before(self, topics: Collection[str], seconds: float, most_bytes: int) -> list[Recorded]:
-        """Return the messages of some topics in the seconds before the time that is shown, as far as known.
+        """Return the known messages of some topics in the seconds before the displayed time.
 
         Args:
-            topics: the topics; the last minutes only have those that the viewer is subscribed to.
-            seconds: the length of time.
-            most_bytes: the limit; if they are larger together, none are returned.
+            topics: the topics; the history of the last minutes only has those that the viewer is subscribed to.
+            seconds: the duration.
+            most_bytes: the maximum total size; if the messages exceed it, none are returned.
         """
         if self._live is None and self._recorded is None:
             return []
@@ -322,7 +328,7 @@ class TimelineFeature(PageFeature):
     # -----------------------------------------------------------------------------------------------------------
 
     def _reset(self) -> None:
-        """Drop the displayed and queued messages: they belong to another time."""
+        """Drop the displayed and the queued messages, which belong to another time."""
         for subscription in self.context.node.subscriptions:
             subscription.discard()
         for manager in self.managers.all():
@@ -376,7 +382,7 @@ class TimelineFeature(PageFeature):
             self._publish_timer = self._loop.call_later(_EXTENT_PERIOD, self._publish_extent)
 
     def _publish_extent(self) -> None:
-        """Report the extent of the history to pages, as long as there are any."""
+        """Send the extent of the history to pages while any are open."""
         self._publish_timer = None
         if self._live is not None and len(self.context.pages):
             self.context.pages.publish(self._extent(self._live))

@@ -1,4 +1,4 @@
-"""The views and the tools of a configuration, for the pages that see it."""
+"""The views and the tools of a configuration, for the pages that show it."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 
 class ViewsFeature(PageFeature):
-    """The cameras of pages, which start with the file's view; the last view of any page is saved."""
+    """The cameras of pages, which start with the file's view. Saving the file saves the view that changed last."""
 
     RECEIVES: ClassVar[tuple[type, ...]] = (ViewChanged, RobotMeasured, SaveView, ChangeSavedView, RemoveSavedView)
 
@@ -52,15 +52,15 @@ class ViewsFeature(PageFeature):
         self._classes = ViewClasses(view_classes())
 
     def opening(self) -> list[ServerMessage]:
-        """Return the classes of views."""
+        """Return the available view types."""
         return [self._classes]
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return the view of the file, whichever pages have now, and the saved ones."""
+        """Return the view of the file and the saved views."""
         return [ViewState(manager.view, manager.opened, manager.shows_whole_robot), self._saved(manager)]
 
     def receive(self, page: Page, message: Any) -> None:
-        """Store the views that pages send; those that are not valid are refused."""
+        """Handle views that pages send; invalid ones are refused."""
         manager = self.managers.of(page)
         views = manager.config.views
         try:
@@ -77,7 +77,7 @@ class ViewsFeature(PageFeature):
             elif isinstance(message, RemoveSavedView):
                 views.remove(message.id)
         except KeyError:
-            return  # another page removed it
+            return  # another page has removed the view
         except ValueError as error:
             self.context.node.get_logger().warning(f"A page sent an invalid view: {error}")
             return
@@ -98,7 +98,7 @@ _POINT_TOOL = "rviz_default_plugins/PublishPoint"
 
 @dataclass(slots=True)
 class _Shelf:
-    """The tools of a configuration with their publishers, by their ids."""
+    """The tools of a configuration, and their publishers and goal senders by ID."""
 
     config: ToolsConfig
     publishers: dict[str, Publisher[Any]] = field(default_factory=dict)
@@ -106,9 +106,9 @@ class _Shelf:
 
 
 class ToolsFeature(PageFeature):
-    """The tools of a configuration, for the pages that see it.
+    """The tools of a configuration, for the pages that show it.
 
-    Publishers are created at the start, as in RViz: subscribers are then discovered before the first message.
+    Publishers are created at the start, as in RViz, so that subscribers are discovered before the first message.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (SetToolProperty, AddTool, RemoveTool, PoseChosen, PointChosen)
@@ -127,13 +127,13 @@ class ToolsFeature(PageFeature):
         return [_tools_message(self._shelf(manager))]
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Stop publishing for it."""
+        """Destroy the publishers of the manager's tools."""
         shelf = self._shelves.pop(manager, None)
         if shelf is not None:
             self._clear(shelf)
 
     def receive(self, page: Page, message: Any) -> None:
-        """Carry out a request; tools that are gone are ignored."""
+        """Handle a request; requests for removed tools are ignored."""
         manager = self.managers.of(page)
         shelf = self._shelf(manager)
         if isinstance(message, SetToolProperty):
@@ -151,12 +151,12 @@ class ToolsFeature(PageFeature):
             self._publish_point(manager, message)
 
     def close(self) -> None:
-        """Stop publishing."""
+        """Destroy all publishers."""
         for manager in list(self._shelves):
             self.manager_closed(manager)
 
     def _shelf(self, manager: VisualizationManager) -> _Shelf:
-        """Return the tools of a manager; after a change of the configuration they get new publishers."""
+        """Return the tools of a manager, with new publishers if the configuration was replaced."""
         shelf = self._shelves.get(manager)
         if shelf is None or shelf.config is not manager.config.tools:
             if shelf is not None:
@@ -216,10 +216,10 @@ class ToolsFeature(PageFeature):
     # --- what is published ---------------------------------------------------------------------------------------
 
     def _announce(self, shelf: _Shelf, entry: ToolEntry) -> None:
-        """Recreate the publisher; without a topic there is none."""
+        """Recreate a tool's publisher; a tool without a topic has none."""
         kind = TOOL_KINDS.get(entry.cls)
         if kind is not None and kind.action is not None:
-            from linkwright.panels.goals import GoalSender  # here, because few configurations have such a tool
+            from linkwright.panels.goals import GoalSender  # imported here because few configurations need it
 
             shelf.goals[entry.id] = GoalSender(self.context.node, *kind.action)
         if kind is None or kind.publishes is None:
@@ -243,7 +243,7 @@ class ToolsFeature(PageFeature):
     def _find(
         self, manager: VisualizationManager, identity: str, classes: Collection[str]
     ) -> tuple[ToolEntry, Publisher[Any]] | None:
-        """Return a tool of some classes, and its publisher."""
+        """Return a tool and its publisher; None if it has none or is of another class."""
         shelf = self._shelves[manager]
         entry, publisher = shelf.config.find(identity), shelf.publishers.get(identity)
         return None if entry is None or publisher is None or entry.cls not in classes else (entry, publisher)
@@ -289,7 +289,10 @@ class ToolsFeature(PageFeature):
         publisher.publish(message)
 
     def _stamped(self, manager: VisualizationManager, kind: str | None, pose: Transform) -> tuple[Any, list[float]]:
-        """Return a tool's message without its pose; and a pose in the Fixed Frame, in the frame of the message."""
+        """Return a stamped message with an empty pose, and the given pose in the message's frame.
+
+        The given pose is in the Fixed Frame.
+        """
         assert kind is not None
         message = get_message(kind)()
         message.header.frame_id, place = self.context.transforms.known(manager.fixed_frame, pose)
@@ -298,7 +301,7 @@ class ToolsFeature(PageFeature):
 
 
 def _fill(pose: Any, place: list[float]) -> Any:
-    """Write numbers into a geometry_msgs/msg/Pose, and return it."""
+    """Write position and quaternion into a geometry_msgs/msg/Pose, and return it."""
     pose.position.x, pose.position.y, pose.position.z = place[:3]
     pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w = place[3:]
     return pose

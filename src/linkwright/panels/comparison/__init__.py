@@ -1,1 +1,1 @@
-"""Two descriptions in one scene: the old one beside the new one, and a list of the differences."""
+"""Two descriptions in one scene: the old robot together with the new one, and a list of the differences."""

@@ -1,4 +1,4 @@
-"""Sends pages the differences of two descriptions in one scene."""
+"""Send pages the differences of two descriptions in one scene."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _ALPHA = 0.4
 
 
 def show_old(config: RvizConfig, name: str) -> None:
-    """Add the display of the old robot, translucent, to the configuration of the new one."""
+    """Add a translucent display of the old robot to the configuration of the new one."""
     display = config.make("rviz_default_plugins/RobotModel", name)
     for path, value in (
         (("Description Topic", "Value"), TOPIC),
@@ -42,7 +42,7 @@ def show_old(config: RvizConfig, name: str) -> None:
 
 
 class ComparisonFeature(PageFeature):
-    """Compares the robots of two displays, whenever one of them is replaced. Without a pair it does nothing."""
+    """Compares the robots of two displays whenever one of them is replaced. Without a pair it does nothing."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -52,20 +52,20 @@ class ComparisonFeature(PageFeature):
         self._sent: dict[VisualizationManager, ComparedDescriptions] = {}
 
     def attach(self, pair: Pair, node: Node) -> Callable[[str], None]:
-        """Show pages the differences of two descriptions.
+        """Show pages the differences between two descriptions.
 
         Args:
             pair: the descriptions; their displays are those of `RvizConfig.for_model` and of `show_old`.
-            node: publishes the old one and its transforms.
+            node: publishes the old description and its transforms.
 
         Returns:
-            The function to call with each new text of the old one.
+            A function to call with each new text of the old description.
         """
         self._pair, self._old = pair, OldRobot(node, self.context.node)
         return self._old.publish
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return the differences that pages received last."""
+        """Return the differences that were last sent to pages."""
         message = self._message(manager)
         if message is None:
             return []
@@ -89,11 +89,11 @@ class ComparisonFeature(PageFeature):
             self._publish(manager)
 
     def edited(self, manager: VisualizationManager) -> None:
-        """Compare again, as displays may have been added or removed."""
+        """Compare again, since displays may have been added or removed."""
         self._publish(manager)
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Forget the messages that its pages received."""
+        """Drop the messages that were sent to the manager's pages."""
         self._sent.pop(manager, None)
 
     def _publish(self, manager: VisualizationManager) -> None:
@@ -118,7 +118,7 @@ class ComparisonFeature(PageFeature):
 
 
 def without_paths(message: ComparedDescriptions) -> ComparedDescriptions:
-    """Return the comparison for other readers: places are texts, without folders above the current one."""
+    """Return the comparison for other readers: places are text, without folders above the current one."""
     for compared_robot in (message.old, message.new):
         compared_robot.label = _shareable(compared_robot.label)
     for item in message.items:
@@ -153,7 +153,7 @@ def _identity(display: RobotModelDisplay | None) -> str:
 
 
 def _marks(comparison: Comparison, old: Robot, new: Robot) -> tuple[dict[str, Mark], dict[str, Mark]]:
-    """Return the marks on links of the old robot and of the new one."""
+    """Return the marks for links of the old robot and of the new one."""
     of_old: dict[str, Mark] = {name: "removed" for name in old.links if name not in comparison.links}
     before = {after: name for name, after in comparison.links.items()}
     of_new: dict[str, Mark] = {name: "added" for name in new.links if name not in before}
@@ -170,7 +170,7 @@ def _marks(comparison: Comparison, old: Robot, new: Robot) -> tuple[dict[str, Ma
 
 
 def _links_of_same_shape(comparison: Comparison) -> dict[str, str]:
-    """Return common links, by their names in the old one, whose visuals and collisions are the same."""
+    """Return the links with unchanged visuals and collisions, by their names in the old robot."""
     other = {
         difference.name
         for difference in comparison.differences
@@ -198,10 +198,14 @@ def _item(difference: Difference, old: Robot, new: Robot, pair: Pair) -> Compare
 
 
 def _element(difference: Difference, old: Robot, new: Robot) -> tuple[Literal["link", "joint"], str, bool]:
-    """Return the link or joint that shows a difference: its kind, its name, and whether only the old robot has it."""
+    """Return the link or joint that shows a difference.
+
+    Returns:
+        Its kind, its name, and whether only the old robot has it.
+    """
     name = difference.name
     if difference.subject == "extension":
-        name = name.partition(" ")[2]  # such as that of the link to which a <gazebo> refers
+        name = name.partition(" ")[2]  # for example, the link that a <gazebo> element refers to
     for robot in (new, old):
         elements: Mapping[str, Mapping[str, object]] = {"link": robot.links, "joint": robot.joints}
         if difference.subject != "joint" and name in elements["link"]:

@@ -1,4 +1,4 @@
-"""The older of two descriptions as a robot of the graph, with its links at the poses of the new one's."""
+"""The older of two descriptions as a robot of the graph, whose links follow the poses of the newer robot."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ TOPIC = "/old/robot_description"
 
 
 class OldRobot:
-    """Publishes a description, and transforms that give its joints the positions of another robot's.
+    """Publishes a description, and transforms that give its joints the positions of another robot's joints.
 
-    Joints that both have follow the other robot; joints that only the old one has are at zero, or in the middle of
-    limits without zero.
+    Joints that both robots have follow the other robot. Joints that only the old robot has are at zero, or in the
+    middle of their limits if those exclude zero.
 
     Args:
         node: the node that publishes; other programs need not see it, because this robot is not theirs.
@@ -51,15 +51,15 @@ class OldRobot:
         listener.create_subscription(JointState, "joint_states", self._moved, SENSOR_DATA_QOS)
 
     def publish(self, text: str) -> None:
-        """Publish a description; `place` publishes the poses of its links."""
+        """Publish a description; call `place` to publish the poses of its links."""
         self._text.publish(String(text))
 
     def place(self, old: Robot, new: Robot, comparison: Comparison) -> None:
         """Publish the poses of the links.
 
         Args:
-            old: the robot of the text.
-            new: the robot that joint states are about.
+            old: the robot of the published description.
+            new: the robot whose joint states are received.
             comparison: the links and joints that correspond.
         """
         now = self._listener.get_clock().now_ns()
@@ -91,7 +91,10 @@ class OldRobot:
 
 
 def joints_that_follow(old: Robot, new: Robot, same: Mapping[str, str]) -> dict[str, str]:
-    """Return the old robot's joints that follow joints of the new one, by name: both revolute, or both prismatic."""
+    """Return the old robot's joints that follow joints of the new one, by name.
+
+    A joint and the joint that it follows are both revolute, or both prismatic.
+    """
     return {
         name: twin
         for name, twin in same.items()
@@ -101,7 +104,7 @@ def joints_that_follow(old: Robot, new: Robot, same: Mapping[str, str]) -> dict[
 
 
 def _positions_at_zero(robot: Robot, leaders: Mapping[str, str]) -> dict[str, float]:
-    """Return initial positions for all movable joints, except those that mimic one of these."""
+    """Return initial positions for all movable joints, except joints that mimic another movable joint."""
     zeros = {joint.name: joint.zero for joint in layout_of(robot, JointSettings()).ranges.values()}
     moving = [joint for joint in robot.joints.values() if joint.type in MOVING_TYPES]
     given = {joint.name for joint in moving if joint.mimic is None or joint.name in leaders}
@@ -115,7 +118,7 @@ def _positions_at_zero(robot: Robot, leaders: Mapping[str, str]) -> dict[str, fl
 def _anchor(old: Robot, new: Robot, same: Mapping[str, str]) -> tuple[str, NDArray[np.float64]]:
     """Return the new robot's frame to which the old root is attached, and the root's pose in it.
 
-    The common link that is nearest to the old root coincides in both; the joints between have position zero.
+    The common link nearest to the old root coincides in both robots, with the joints between them at zero.
     """
     below: dict[str, list[tuple[str, NDArray[np.float64]]]] = {}
     for joint in old.joints.values():

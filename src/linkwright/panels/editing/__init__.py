@@ -1,1 +1,1 @@
-"""Editing a robot in the page."""
+"""Edit a robot in the page."""

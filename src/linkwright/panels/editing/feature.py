@@ -1,7 +1,7 @@
-"""Editing a robot in the page: shows the smallest edits of text, and writes them into the files on request.
+"""Edit a robot in the page: show minimal text changes, and write them into the files on request.
 
-All pages share one history. Requests are handled one after the other, in a thread: an edit is verified by expanding
-the description again.
+All pages share one history. Requests are handled one after the other in a thread, because an edit is verified by
+expanding the description again.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class EditingFeature(PageFeature):
         self._worker: asyncio.Task[None] | None = None
 
     def receive(self, page: Page, message: Any) -> None:
-        """Queue a request; requests are carried out in their order."""
+        """Queue a request; requests are handled in order."""
         if isinstance(message, editing.PreviewEdit):
             self._newest[page] = message.number
         self._watching.add(page)
@@ -46,13 +46,13 @@ class EditingFeature(PageFeature):
             self._worker = asyncio.get_running_loop().create_task(self._work())
 
     def page_closed(self, page: Page) -> None:
-        """Forget the previews of a page."""
+        """Drop the previews of a page."""
         self._watching.discard(page)
         self._plans.pop(page, None)
         self._newest.pop(page, None)
 
     def close(self) -> None:
-        """End for good."""
+        """Stop handling requests."""
         if self._worker is not None:
             self._worker.cancel()
 
@@ -117,7 +117,7 @@ class EditingFeature(PageFeature):
         return editing.EditableParts(message.display, message.link, problem, parts)
 
     def _known_robot(self, page: Page, display: str) -> tuple[Robot | None, Description | None]:
-        """Return the robot that a display shows, and how it was read if it is from a file of this machine."""
+        """Return the robot that a display shows, and its description if it is from a file of this machine."""
         found = next(
             (robot_model for robot_model in self.managers.of(page).robot_models() if robot_model.id == display), None
         )
@@ -135,7 +135,7 @@ class EditingFeature(PageFeature):
 
 
 def _planned(known: Description, message: editing.PreviewEdit) -> EditPlan:
-    """Return the plan of an edit, for the files as they are now."""
+    """Return the plan of an edit for the current files."""
     return plan_edit(read_again(known), request_of(message), Workspace(Path(known.name)).refusal)
 
 

@@ -1,4 +1,4 @@
-"""The editable parts of a robot, with their values and places; and edits as lines of text."""
+"""The editable parts of a robot with their values and places, and edits as lines of text."""
 
 from __future__ import annotations
 
@@ -36,7 +36,10 @@ def request_of(message: PreviewEdit) -> EditRequest:
 
 
 def files_of(plan: EditPlan) -> list[EditedFile]:
-    """Return the changes of an edit, as lines that start with ``-``, ``+`` or a blank, and lines with their places."""
+    """Return the files that an edit changes, with lines that start with ``-``, ``+`` or a blank.
+
+    Lines with ``@@`` before them give their positions in the file.
+    """
     return [EditedFile(path, list(_diff(plan.before[path], text))) for path, text in plan.texts.items()]
 
 
@@ -65,13 +68,13 @@ def _of_inertial(link: str, inertial: Inertial) -> EditablePart:
 
 
 def _numbers(origin: Pose) -> tuple[list[float], list[float]]:
-    """Return position and angles, as they are written if they are."""
+    """Return the position and the roll, pitch and yaw of a pose, as written in the file where possible."""
     rpy = origin.rpy if origin.quaternion is None else rpy_from_quaternion(origin.quaternion)
     return list(origin.xyz), list(rpy)
 
 
 def _written(owner: Element | None, tag: str) -> tuple[str, str, int]:
-    """Return the text of an element in its file, the file and the line; without a text, the owner's place."""
+    """Return the text, file and line of a child element; for a missing one, the owner's file and line."""
     element = None if owner is None else owner.first(tag)
     place = element or owner
     span = None if place is None else place.span()

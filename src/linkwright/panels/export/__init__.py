@@ -1,1 +1,1 @@
-"""Exports of robots: one HTML page that needs no server, and glTF."""
+"""Export robots as one HTML page that needs no server, or as glTF."""

@@ -1,4 +1,4 @@
-"""Exports the robot as a file in one of several formats, for a page to fetch once."""
+"""Export the robot in one of several file formats, for a page to download once."""
 
 from __future__ import annotations
 
@@ -50,28 +50,28 @@ FORMATS = {
 
 
 def format_of(name: str) -> Format | None:
-    """Return the format for the extension of a file's name."""
+    """Return the format for a file name, by its suffix; None if there is no such format."""
     return FORMATS.get(name.rpartition(".")[2].lower()) if "." in name else None
 
 
 def export_snapshot(snapshot: Snapshot, ending: str) -> bytes:
-    """Return the file's content.
+    """Return the content of the exported file.
 
     Raises:
-        LinkwrightError: it cannot be made.
+        LinkwrightError: the file cannot be made.
     """
     return FORMATS[ending].write(snapshot)
 
 
 class ExportFeature(PageFeature):
-    """Exports the configuration that a page sees."""
+    """Exports the configuration that a page shows."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._working: dict[Page, asyncio.Task[None]] = {}
 
     def receive(self, page: Page, message: AskExport) -> None:
-        """Start an export; one at a time for each page."""
+        """Start an export; each page has one at a time."""
         if message.format not in FORMATS or page in self._working:
             return
         task = asyncio.get_running_loop().create_task(self._make(page, message))
@@ -79,7 +79,7 @@ class ExportFeature(PageFeature):
         task.add_done_callback(lambda _: self._working.pop(page, None))
 
     def close(self) -> None:
-        """Stop exporting."""
+        """Cancel running exports."""
         for task in self._working.values():
             task.cancel()
 
@@ -93,7 +93,7 @@ class ExportFeature(PageFeature):
         except Exception as error:  # noqa: BLE001  # a fault of ours must not leave the page waiting
             self.context.node.get_logger().error(
                 f"The export failed:\n{traceback.format_exc()}"
-            )  # not the standard library's logger
+            )  # this is rclpy's logger, not the standard library's
             page.send(ExportFailed(f"{type(error).__name__}: {error}"))
             return
         name = re.sub(r"[^\w.-]+", "_", snapshot.name).strip("._") or "robot"

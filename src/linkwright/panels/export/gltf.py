@@ -1,4 +1,4 @@
-"""A robot as glTF 2.0 binary file: a document, and its arrays and images."""
+"""Write a robot as a glTF 2.0 binary file: a document, with its arrays and images."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ _REPEAT, _LINEAR, _LINEAR_MIPMAPS = 10497, 9729, 9987
 
 
 class GltfFile:
-    """A glTF that grows; indices identify its parts.
+    """A glTF file under construction; its parts are identified by indices.
 
     Args:
-        generator: the program that makes it.
+        generator: the name of the program that creates it.
     """
 
     def __init__(self, generator: str) -> None:
@@ -46,17 +46,23 @@ class GltfFile:
         self._generator = generator
 
     def add(self, kind: str, **content: Any) -> int:
-        """Add to one of the document's lists (``nodes``, ``meshes``, ``materials``, ...), without values of None."""
+        """Add an entry to a list of the document, and return its index.
+
+        The list is ``nodes``, ``meshes``, ``materials`` or another one. Values of None are omitted.
+        """
         entries = self._parts.setdefault(kind, [])
         entries.append({name: value for name, value in content.items() if value is not None})
         return len(entries) - 1
 
     def entry(self, kind: str, index: int) -> dict[str, Any]:
-        """Return an entry that was added, for changes."""
+        """Return an entry that was added, so that it can be changed."""
         return self._parts[kind][index]
 
     def vertices(self, values: NDArray[Any], *, bounded: bool = False) -> int:
-        """Add an array of shape (N, 2 to 4), as float32; with its bounds, as positions must have them."""
+        """Add an array of shape (N, 2 to 4) as float32, with its bounds if requested; return its index.
+
+        glTF requires the bounds for positions.
+        """
         array = np.ascontiguousarray(values, dtype="<f4")
         bounds: dict[str, Any] = {}
         if bounded:
@@ -71,7 +77,7 @@ class GltfFile:
         )
 
     def indices(self, values: NDArray[Any]) -> int:
-        """Add the corners of triangles."""
+        """Add the vertex indices of triangles; return the index of the array."""
         short = values.size == 0 or int(values.max()) < 0xFFFF
         array = np.ascontiguousarray(values, dtype="<u2" if short else "<u4").reshape(-1)
         return self.add(
@@ -83,14 +89,14 @@ class GltfFile:
         )
 
     def texture(self, data: bytes, content_type: str) -> int:
-        """Add a PNG or JPEG as a texture that repeats."""
+        """Add a PNG or JPEG as a repeating texture; return its index."""
         if not self._parts.get("samplers"):
             self.add("samplers", magFilter=_LINEAR, minFilter=_LINEAR_MIPMAPS, wrapS=_REPEAT, wrapT=_REPEAT)
         image = self.add("images", bufferView=self._view(data), mimeType=content_type)
         return self.add("textures", source=image, sampler=0)
 
     def binary(self, roots: list[int]) -> bytes:
-        """Return the file (.glb), which shows these nodes."""
+        """Return the content of the .glb file, whose scene has these root nodes."""
         document: dict[str, Any] = {
             "asset": {"version": "2.0", "generator": self._generator},
             "scene": 0,
@@ -129,7 +135,7 @@ def glb_of(snapshot: Snapshot) -> bytes:
     Colours are those of the page, converted to glTF's linear values.
 
     Raises:
-        LinkwrightError: VIEW204, a mesh cannot be read; INR104, VIEW205, a library for it is not installed.
+        LinkwrightError: VIEW204, a mesh cannot be read; INR104 or VIEW205, a library for it is not installed.
     """
     return _RobotWriter(snapshot).write()
 
@@ -241,13 +247,13 @@ class _RobotWriter:
     # --- materials ---------------------------------------------------------------------------------------------
 
     def _texture(self, shape: Shape) -> bytes | None:
-        """Return the URDF's texture, as a file that glTF supports."""
+        """Return the texture that the URDF sets, in a format that glTF supports; None if there is none."""
         if shape.texture is None:
             return None
         try:
             return _as_png(self._files.path(shape.texture))
         except (FileRefusedError, OSError, ValueError):
-            return None  # the page draws the shape without it, too
+            return None  # the page also draws the shape without an unreadable texture
 
     def _material(self, look: _Look) -> int:
         if look not in self._materials:
@@ -272,14 +278,14 @@ class _RobotWriter:
 
 
 class _Neighbours:
-    """Gives trimesh the files beside a mesh, under the rules by which pages read files."""
+    """Gives trimesh the files next to a mesh, under the same access rules as for pages."""
 
     def __init__(self, files: FileSet, url: str) -> None:
         self._files = files
         self._folder = urlsplit(url).path.rpartition("/")[0]
 
     def get(self, name: str) -> bytes:
-        """Return a file by its name in the mesh."""
+        """Return the content of a file that the mesh names."""
         try:
             return self._files.path(f"{self._folder}/{name.strip().removeprefix('./')}").read_bytes()
         except FileRefusedError as error:
@@ -288,12 +294,15 @@ class _Neighbours:
     __getitem__ = get
 
     def keys(self) -> list[str]:
-        """Return no names: trimesh reads files only by `get`."""
+        """Return an empty list, so that trimesh reads files only with `get`."""
         return []
 
 
 def _look(shape: Shape, part: MeshPart, texture: bytes | None) -> _Look:
-    """Return the look of a part: its own material, else the URDF's. The URDF alone sets the opacity."""
+    """Return the look of a mesh part: its own material, or else the URDF's.
+
+    The opacity is always the URDF's.
+    """
     is_mesh = shape.kind == "mesh"
     alpha = shape.color[3] if shape.color else 1.0
     own = part.own
@@ -307,7 +316,7 @@ def _look(shape: Shape, part: MeshPart, texture: bytes | None) -> _Look:
 
 
 def _as_png(path: Path) -> bytes:
-    """Return an image file as PNG or JPEG."""
+    """Return the content of an image file, converted to PNG unless it is PNG or JPEG."""
     data = path.read_bytes()
     if data.startswith((b"\x89PNG", b"\xff\xd8\xff")):
         return data
@@ -323,7 +332,7 @@ def _as_png(path: Path) -> bytes:
 
 
 def _linear(colors: Any) -> Any:
-    """Return sRGB colours in glTF's linear values; alpha stays."""
+    """Convert sRGB colours to glTF's linear values; alpha is unchanged."""
     seen = np.asarray(colors, dtype=np.float64)
     linear = np.where(seen <= 0.04045, seen / 12.92, ((seen + 0.055) / 1.055) ** 2.4)
     linear[..., 3] = seen[..., 3]

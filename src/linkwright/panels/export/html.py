@@ -1,4 +1,4 @@
-"""A robot as one HTML file with all scripts, styles, meshes and textures; it fetches nothing."""
+"""Write a robot as one HTML file that contains all scripts, styles, meshes and textures, and fetches nothing."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _PAGE = """\
 
 
 def html_of(snapshot: Snapshot) -> bytes:
-    """Return the page of a snapshot.
+    """Return the HTML page of a snapshot.
 
     Raises:
         LinkwrightError: VIEW202, the page of this installation was not built.
@@ -66,14 +66,14 @@ def html_of(snapshot: Snapshot) -> bytes:
 
 
 def _script(folder: Path) -> str:
-    packed = folder / "export.js.gz"  # `npm run build` alone does not pack it
+    packed = folder / "export.js.gz"  # `npm run build` alone does not create the compressed file
     if packed.is_file():
         return gzip.decompress(packed.read_bytes()).decode()
     return (folder / "export.js").read_text(encoding="utf-8")
 
 
 def _policy(script: str) -> str:
-    """Return a policy that runs only this one script; images and meshes are in the page itself."""
+    """Return a content security policy that allows only this script; images and meshes are in the page."""
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return (
         f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; img-src data: blob:; "
@@ -82,7 +82,7 @@ def _policy(script: str) -> str:
 
 
 def _recorded(snapshot: Snapshot, program: str) -> str:
-    """Return the messages of a server to a new page, as JSON that can be embedded in HTML."""
+    """Return the messages that a server sends to a new page, as JSON that can be embedded in HTML."""
     robots = [message for message in snapshot.messages if isinstance(message, RobotScene)]
     files = FileSet(snapshot.meshes).collect([*addresses(robots), *snapshot.marker_meshes])
     messages = without_secrets(",".join(encode(message) for message in snapshot.messages))

@@ -1,4 +1,4 @@
-"""The shapes of URDF as triangles."""
+"""Triangulate the shapes of URDF."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _RINGS = 16
 
 
 def box(size: Sequence[float]) -> Triangles:
-    """Return a box around the origin."""
+    """Return a box that is centred at the origin."""
     positions, normals, coordinates = [], [], []
     for axis in range(3):
         for side in (1.0, -1.0):
@@ -30,7 +30,7 @@ def box(size: Sequence[float]) -> Triangles:
 
 
 def cylinder(radius: float, length: float) -> Triangles:
-    """Return a cylinder along z, around the origin, with caps."""
+    """Return a cylinder along z with caps, centred at the origin."""
     half = length / 2
     profile = [(0.0, half, 0, 1), (radius, half, 0, 1), (radius, half, 1, 0), (radius, -half, 1, 0)]
     profile += [(radius, -half, 0, -1), (0.0, -half, 0, -1)]
@@ -38,14 +38,14 @@ def cylinder(radius: float, length: float) -> Triangles:
 
 
 def sphere(radius: float) -> Triangles:
-    """Return a sphere around the origin."""
+    """Return a sphere that is centred at the origin."""
     angles = np.linspace(np.pi / 2, -np.pi / 2, _RINGS + 1)
     cosines, sines = np.cos(angles), np.sin(angles)
     return _turned(np.stack([radius * cosines, radius * sines, cosines, sines], axis=1))
 
 
 def capsule(radius: float, length: float) -> Triangles:
-    """Return a cylinder along z, around the origin, with half spheres beyond its ends."""
+    """Return a cylinder along z, centred at the origin, with a hemisphere at each end."""
     angles = np.linspace(np.pi / 2, -np.pi / 2, _RINGS + 1)
     angles = np.insert(angles, _RINGS // 2, 0.0)
     shift = np.where(np.arange(_RINGS + 2) <= _RINGS // 2, length / 2, -length / 2)
@@ -54,7 +54,10 @@ def capsule(radius: float, length: float) -> Triangles:
 
 
 def _turned(profile: Array) -> Triangles:
-    """Return the surface that a profile from top to bottom sweeps around z; its rows are r, z and the normal's r, z."""
+    """Return the surface of revolution of a profile around z, from top to bottom.
+
+    The rows of the profile are r, z, and the normal's r, z.
+    """
     around = np.linspace(0.0, 2 * np.pi, _SIDES + 1)
     cosines, sines = np.cos(around), np.sin(around)
     rows, columns = len(profile), _SIDES + 1

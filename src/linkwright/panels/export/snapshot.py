@@ -1,4 +1,4 @@
-"""Snapshots of a viewer's scene at one moment, with the files needed to draw it, for pages without a server."""
+"""Snapshots of a viewer's scene, with the files needed to draw it, for pages without a server."""
 
 from __future__ import annotations
 
@@ -46,11 +46,13 @@ Pose = NDArray[np.float64]
 
 
 def positions_now(robot: Robot, poses: Mapping[str, Pose]) -> dict[str, float]:
-    """Return positions (rad or m) of the revolute, continuous and prismatic joints whose links can be placed.
+    """Return the positions (rad or m) of the revolute, continuous and prismatic joints from link poses.
+
+    Joints whose links have no known pose are omitted.
 
     Args:
         robot: the description.
-        poses: link -> its pose, all in one frame.
+        poses: the poses by link name, all in one frame.
     """
     positions = {}
     for joint in robot.joints.values():
@@ -81,7 +83,7 @@ def _position(joint: Joint, parent: Pose, child: Pose) -> float:
 
 
 def _within(joint: Joint, angle: float) -> float:
-    """Return the angle, or the equivalent one within the limits."""
+    """Return the angle, or an equivalent angle that is within the limits."""
     if joint.type == "continuous" or joint.limit is None:
         return angle
     for turned in (angle, angle + 2.0 * pi, angle - 2.0 * pi):
@@ -97,7 +99,7 @@ _MATERIAL_MAP = re.compile(r"^[ \t]*(?:map_\w+|bump|norm|disp)[ \t]+(.+?)[ \t]*\
 
 
 def addresses(scenes: Iterable[RobotScene]) -> list[str]:
-    """Return the addresses of the meshes and textures that robots name, each once."""
+    """Return the addresses of the meshes and textures of robots, without duplicates."""
     links = chain.from_iterable(scene.links for scene in scenes)
     shapes = chain.from_iterable((*link.visuals, *link.collisions) for link in links)
     named = chain.from_iterable((shape.url, shape.texture) for shape in shapes)
@@ -105,7 +107,7 @@ def addresses(scenes: Iterable[RobotScene]) -> list[str]:
 
 
 class FileSet:
-    """Files by the path of their address, under the rules by which pages read files.
+    """Reads files by the path of their address, under the same access rules as for pages.
 
     Args:
         meshes: the folders that may be read.
@@ -115,10 +117,10 @@ class FileSet:
         self._meshes = meshes
 
     def path(self, address: str) -> Path:
-        """Return the file at an address.
+        """Return the path of the file at an address.
 
         Raises:
-            FileRefusedError: it may not be read, or does not exist.
+            FileRefusedError: the file may not be read, or does not exist.
         """
         found = _ADDRESS.fullmatch(urlsplit(address).path)
         if found is None:
@@ -126,7 +128,10 @@ class FileSet:
         return self._meshes.file(found[1], unquote(found[2]))
 
     def collect(self, wanted: Iterable[str]) -> dict[str, bytes]:
-        """Return contents by the path of their address, with the files that meshes name; missing ones are left out."""
+        """Return the contents of files and of the files that their meshes name, by path of address.
+
+        Missing files are omitted.
+        """
         contents: dict[str, bytes] = {}
         waiting = [urlsplit(address).path for address in wanted]
         while waiting:
@@ -144,14 +149,14 @@ class FileSet:
 
 
 def named_files(ending: str, data: bytes) -> list[str]:
-    """Return the names of other files in a mesh or material file, as written there, relative to its folder."""
+    """Return the file names in a mesh or material file, as written there, relative to its folder."""
     names: list[str] = []
     if ending == ".dae":
         names = _COLLADA_IMAGE.findall(data.decode("utf-8", "replace"))
     elif ending == ".obj":
         names = _MATERIAL_FILE.findall(data.decode("utf-8", "replace"))
     elif ending == ".mtl":
-        # Options and their numbers may precede a name, which may contain spaces only without them.
+        # Options and their numbers may precede a name. A name may contain spaces only if there are no options.
         lines = _MATERIAL_MAP.findall(data.decode("utf-8", "replace"))
         names = [line.split()[-1] if line.startswith("-") else line for line in lines]
     elif ending == ".gltf":
@@ -173,21 +178,21 @@ _PATHS = frozenset({"Description File"})
 
 @dataclass(frozen=True)
 class Snapshot:
-    """A robot, and all messages that pages draw it from.
+    """A robot, and all messages from which pages draw it.
 
     Attributes:
         name: the name of the robot.
         robot: its description.
         scene: its links as pages draw them.
-        positions: joint -> rad or m.
+        positions: the joint positions by name, rad or m.
         messages: the messages that a page needs, the frame table last.
         frames: binary frames, the transforms first.
         meshes: finds the files that `scene` names.
         problems: the findings on shapes that cannot be drawn.
         marker_meshes: addresses of the meshes that markers show.
         outside: the included files that are neither in a package nor below the description's folder.
-        awaits_size: whether grid and axes should get the size of the robot, which a page measures.
-        spacing: the usual distance of a link's frame from its parent's, m; None if unknown.
+        awaits_size: whether grid and axes should be scaled to the size of the robot, which a page measures.
+        spacing: the typical distance of a link's frame from its parent's, m; None if unknown.
     """
 
     name: str
@@ -205,12 +210,12 @@ class Snapshot:
 
 
 def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View | None = None) -> Snapshot:
-    """Return a snapshot of a configuration as it is shown now.
+    """Return a snapshot of a configuration as it is currently shown.
 
     Args:
         viewer: the viewer that shows it.
         manager: the configuration that it shows.
-        view: the camera; None for that of a new page.
+        view: the camera; None for the camera of a new page.
 
     Raises:
         LinkwrightError: VIEW201, there is no robot.
@@ -239,18 +244,18 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
 def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) -> list[Path]:
     """Return the files of a description that recipients of the export may not be meant to see.
 
-    Includes, ``load_yaml`` and ``file://`` reach any file of the machine, as under ROS.
+    Includes, ``load_yaml`` and ``file://`` can read any file of the machine, as under ROS.
 
     Args:
-        read: the files that the text was made from, the main file first.
+        read: the files from which the text was made, the main file first.
         scene: names the meshes and textures.
-        meshes: the folders that these may be read from.
+        meshes: the folders from which meshes and textures may be read.
 
     Returns:
-        Those that are neither in a package nor below the folder of the main file.
+        The files that are neither in a package nor below the folder of the main file.
     """
     files = FileSet(meshes)
-    found = dict.fromkeys(Path(normpath(path.absolute())) for path in read)  # some paths have `..` in them
+    found = dict.fromkeys(Path(normpath(path.absolute())) for path in read)  # some paths contain `..`
     for address in addresses([scene]):
         with suppress(FileRefusedError):
             found[files.path(address)] = None
@@ -263,12 +268,14 @@ def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) 
 def take_snapshot(
     model: RobotModelDisplay, opening: Sequence[ServerMessage], payloads: Sequence[Payload], meshes: MeshFolders
 ) -> Snapshot:
-    """Return the part of the messages to a new page that it needs to run without a server.
+    """Return a snapshot of a robot from the messages to a new page.
+
+    It contains the messages that the page needs to run without a server.
 
     Args:
         model: the display of the robot whose joints can be moved.
         opening: the messages to a page that opens.
-        payloads: the binary frames to it.
+        payloads: the binary frames to that page.
         meshes: the folders that it may read from.
 
     Raises:
@@ -316,7 +323,7 @@ def _problems(model: RobotModelDisplay) -> list[Diagnostic]:
 
 
 def no_robot() -> LinkwrightError:
-    """Return the error for an export without a robot (VIEW201)."""
+    """Return the error VIEW201: there is no robot to export."""
     hint = phrase("wait until the robot is drawn, or enable its RobotModel display")
     return LinkwrightError(Diagnostic("VIEW201", phrase("there is no robot to export"), hint=hint))
 
@@ -344,7 +351,7 @@ def _poses(table: FrameTable, frames: Sequence[bytes]) -> dict[str, NDArray[np.f
 
 
 def _anonymous(tree: Tree) -> Tree:
-    """Return the displays without their status and without paths, which reveal details of this machine."""
+    """Return the displays without status and paths, which reveal details of this machine."""
     displays: list[Display] = [
         replace(display, status=[], level="ok", properties=_without_paths(display.properties))
         for display in tree.displays

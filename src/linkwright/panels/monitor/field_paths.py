@@ -1,9 +1,9 @@
 """Paths to a number in a message: ``position[2]``, ``position[elbow]``, ``twist.twist.linear.x``.
 
-Names select fields of nested messages. Brackets select an element of an array, by its index or by the name that
-the message gives it. A value's name is the one with the same index in a list of names beside it (``name`` of a
-JointState, ``joint_names`` of a JointTrajectory and its points); a nested message's name is in itself (``name`` of a
-DiagnosticStatus, ``child_frame_id`` of a TransformStamped). Booleans count as 0 and 1; times and durations are seconds.
+Names select fields of nested messages. Brackets select an element of an array, by its index or by its name. The name
+of a value has the same index in a list of names in the same message (``name`` of a JointState, ``joint_names`` of a
+JointTrajectory and its points). A nested message contains its own name (``name`` of a DiagnosticStatus,
+``child_frame_id`` of a TransformStamped). Booleans count as 0 and 1; times and durations are in seconds.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _STEP = re.compile(r"([A-Za-z_]\w*)((?:\[[^\[\]]+\])*)")
 
 
 class FieldPathError(ValueError):
-    """A path is not valid, or does not lead to a number of the message type; the text gives the reason."""
+    """Raised when a path is invalid or does not lead to a number of the message type; the text gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,10 +45,10 @@ class FieldPath:
     """A path to a number.
 
     Args:
-        text: as in the module's description.
+        text: the path, in the notation of this module.
 
     Raises:
-        FieldPathError: it is not a path.
+        FieldPathError: the text is not a valid path.
     """
 
     def __init__(self, text: str) -> None:
@@ -72,7 +72,7 @@ class FieldPath:
         """Check that the path leads to a number in messages of a class.
 
         Raises:
-            FieldPathError: it does not.
+            FieldPathError: the path does not lead to a number.
         """
         cls: type[Message] | None = message_class
         kind: FieldType | None = None
@@ -116,7 +116,7 @@ class FieldPath:
 
 
 def is_number(kind: FieldType) -> bool:
-    """Return whether a value, or an element, of a field is a number."""
+    """Return whether a field's value, or an element of its array, is a number."""
     primitive = kind.primitive
     return kind.base in SECONDS if primitive is None else primitive.python is not str
 
@@ -125,7 +125,7 @@ def element_names(owners: Sequence[Any], values: Any) -> Sequence[str] | None:
     """Return the names of an array's elements, or None if there are none.
 
     Args:
-        owners: the messages on the way to the array, the one that has it last.
+        owners: the nested messages from the outermost to the one that contains the array.
         values: the array.
     """
     if len(values) and isinstance(values[0], Message):
@@ -162,8 +162,8 @@ def plot_fields(message_class: type[Message], message: Message | None = None) ->
 
     Args:
         message_class: the type.
-        message: an example, which has the lengths and element names of its arrays; without one an
-            array of any length is offered with its first element.
+        message: an example that determines the lengths and element names of arrays; without an example, only the first
+            element of a variable-length array is offered.
     """
     found: list[PlotField] = []
     for path, kind in _numbers(message_class, message, "", []):

@@ -1,4 +1,4 @@
-"""The log console: what ``rqt_console`` shows of ``/rosout``."""
+"""The log console, the counterpart of ``rqt_console`` for ``/rosout``."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _KEPT = 1000
 
 
 class _Reader:
-    """The records that wait for one page. Their message is made when its turn in the outbox comes."""
+    """The records that wait for one page. Their message is created when the outbox sends it."""
 
     key = "log_lines"
 
@@ -35,13 +35,13 @@ class _Reader:
         return len(self._waiting)
 
     def add(self, line: LogLine) -> None:
-        """Queue a record; the oldest is dropped when too many wait."""
+        """Queue a record, and drop the oldest one if too many are waiting."""
         if len(self._waiting) == _MOST_WAITING:
             self._missed += 1
         self._waiting.append(line)
 
     def since(self, seen: int) -> tuple[str | None, int]:
-        """Return the message with all records that wait; see `Changes`."""
+        """Return the message with all waiting records; see `Changes`."""
         if not self._waiting:
             return None, seen
         message = LogLines(list(self._waiting), self._missed)
@@ -51,7 +51,7 @@ class _Reader:
 
 
 class LogFeature(PageFeature):
-    """Sends pages the records of ``/rosout``; stores the last ones while there are pages."""
+    """Sends pages the records of ``/rosout``, and stores the latest ones while any page is open."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -68,7 +68,7 @@ class LogFeature(PageFeature):
         return []
 
     def receive(self, page: Page, message: WatchLog) -> None:
-        """Start or stop sending records to a page; records of a pause are sent at the next start."""
+        """Start or stop sending records to a page; records that arrive in a pause are sent after it."""
         if not message.watched:
             self._watching.discard(page)
             return
@@ -78,7 +78,7 @@ class LogFeature(PageFeature):
         self._turn.ask()
 
     def page_closed(self, page: Page) -> None:
-        """Forget the page; unsubscribe after the last one."""
+        """Drop the page's records, and unsubscribe after the last page."""
         self._watching.discard(page)
         self._readers.pop(page, None)
         if len(self.context.pages) == 0:

@@ -1,4 +1,4 @@
-"""The node graph: what ``rqt_graph`` shows."""
+"""The node graph, the counterpart of ``rqt_graph``."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 
 class NodeGraphFeature(PageFeature):
-    """Sends pages the nodes and topics, and every change."""
+    """Sends pages the nodes and topics, initially and after every change."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -27,7 +27,7 @@ class NodeGraphFeature(PageFeature):
         self.context.graph_changes.watch(self._publish)
 
     def page_closed(self, page: Page) -> None:
-        """Forget the page."""
+        """Stop sending the graph to the page."""
         self._sent.pop(page, None)
         if not self._sent:
             self.context.graph_changes.unwatch(self._publish)
@@ -46,7 +46,7 @@ class NodeGraphFeature(PageFeature):
 
 
 def node_graph(graph: GraphQueries) -> NodeGraph:
-    """Return the current nodes and topics; nodes of one name count as one, as everywhere in ROS."""
+    """Return the current nodes and topics; nodes with the same name count as one, as everywhere in ROS."""
     topics: dict[str, GraphTopic] = {}
     for endpoint in graph.endpoints():
         if endpoint.kind not in (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION):

@@ -1,4 +1,4 @@
-"""The parameters panel: what ``rqt_reconfigure`` shows."""
+"""The Parameters panel, the counterpart of ``rqt_reconfigure``."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def parameter_row(descriptor: Any, value: Any) -> ParameterRow:
 
 
 def value_texts(value: Any) -> tuple[ParameterKind, list[str]]:
-    """Return the kind of a value (rcl_interfaces/msg/ParameterValue), and a text for each of its elements."""
+    """Return the kind of a rcl_interfaces/msg/ParameterValue, and a text for each of its elements."""
     plain = plain_value(value)
     kind = ParameterType(value.type)
     if kind is ParameterType.NOT_SET:
@@ -79,7 +79,7 @@ def parameter_of(request: SetParameter) -> Parameter:
     """Return the parameter that a page asks to set.
 
     Raises:
-        ValueError: a text is not a value of the kind; the message quotes it.
+        ValueError: a text is not a value of the parameter's kind; the message quotes it.
     """
     kind = _TYPES[request.kind]
     if kind is ParameterType.NOT_SET:
@@ -121,12 +121,12 @@ _PUBLISH_PERIOD = 0.05
 
 
 class RemoteNode:
-    """Reads and sets the parameters of a node, and follows them while it is watched.
+    """Reads and sets the parameters of a node, and follows their changes while the node is watched.
 
     Args:
-        node: the node that makes the clients.
-        name: full name of the node whose parameters these are.
-        publish: called with all parameters at the start, and on every change.
+        node: the node that creates the clients.
+        name: the full name of the node that has the parameters.
+        publish: called with all parameters at the start, and after every change.
     """
 
     def __init__(self, node: Node, name: str, publish: Callable[[NodeParameters], None]) -> None:
@@ -139,7 +139,7 @@ class RemoteNode:
         self._turn = Paced(self._publish_rows, _PUBLISH_PERIOD)
 
     def close(self) -> None:
-        """Stop requests."""
+        """Cancel requests, and destroy the clients."""
         self._turn.cancel()
         for task in self._tasks:
             task.cancel()
@@ -150,7 +150,7 @@ class RemoteNode:
         self._run(self._refresh())
 
     def apply_event(self, event: Any) -> None:
-        """Apply a rcl_interfaces/msg/ParameterEvent of the node."""
+        """Apply the node's rcl_interfaces/msg/ParameterEvent to the known parameters."""
         for parameter in event.deleted_parameters:
             self._rows.pop(parameter.name, None)
         for parameter in event.changed_parameters:
@@ -163,11 +163,11 @@ class RemoteNode:
             self._turn.ask()
 
     def set(self, request: SetParameter, answer: Callable[[ParameterResult], None]) -> None:
-        """Set a parameter, and answer with the outcome."""
+        """Set a parameter, and call `answer` with the result."""
         self._run(self._set(request, answer))
 
     def dump(self, answer: Callable[[ParameterDump], None]) -> None:
-        """Answer with a parameter file with all the parameters."""
+        """Call `answer` with a parameter file that contains all parameters."""
         self._run(self._dump(answer))
 
     def _run(self, work: Any) -> None:
@@ -242,7 +242,7 @@ class ParametersFeature(PageFeature):
         self._events: TopicTap | None = None
 
     def receive(self, page: Page, message: WatchParameters | SetParameter | DumpParameters) -> None:
-        """Handle a request; a node's parameters are set and dumped by the pages that watch them."""
+        """Handle a request; a page can set and dump the parameters only of a node that it watches."""
         if isinstance(message, WatchParameters):
             self._watch(page, message)
             return
@@ -255,12 +255,12 @@ class ParametersFeature(PageFeature):
             self._nodes[message.node].dump(page.send)
 
     def page_closed(self, page: Page) -> None:
-        """Forget the page's requests."""
+        """Drop the page's requests."""
         if self._requests.pop(page, None) is not None:
             self._update_subscriptions()
 
     def close(self) -> None:
-        """Stop for good."""
+        """Close all clients and subscriptions."""
         self._requests.clear()
         self._update_subscriptions()
 
@@ -283,7 +283,7 @@ class ParametersFeature(PageFeature):
             page.send(known.known)
 
     def _update_subscriptions(self) -> None:
-        """Close clients and subscriptions that no page needs, and open those that a page does."""
+        """Open the clients and subscriptions that pages need, and close all others."""
         requests = self._requests.values()
         names = {request.node for request in requests if request.node is not None}
         for name in self._nodes.keys() - names:
@@ -320,7 +320,7 @@ class ParametersFeature(PageFeature):
                     back.refresh()
 
     def _returned(self, request: _Request, listed: ParameterNodes) -> RemoteNode | None:
-        """Return the node that the page watches, if it has appeared (again) since the last list."""
+        """Return the node that the page watches, if it has appeared or reappeared since the last list."""
         if (
             request.sent is None
             or request.node is None

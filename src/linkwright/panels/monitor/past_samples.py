@@ -1,4 +1,4 @@
-"""Plot samples from recorded messages."""
+"""Extract plot samples from recorded messages."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ _MOST_READ = 3000
 
 
 def sample_of(path: FieldPath, message: Any, received_ns: int) -> tuple[float, float, float] | None:
-    """Return a sample: receive time and the stamp of the header (NaN for none), seconds, and the number of a field.
+    """Return a sample of a field: receive time, header stamp (NaN if there is none), and value.
 
-    None if the message has no such field.
+    The times are in seconds. Returns None if the message has no such field.
     """
     value = path.value(message)
     if value is None:
@@ -35,7 +35,7 @@ def sample_of(path: FieldPath, message: Any, received_ns: int) -> tuple[float, f
 
 
 def past_samples(path: FieldPath, cls: Any, messages: Sequence[Recorded]) -> NDArray[np.float64]:
-    """Return samples of recorded messages of a class: array, shape (3, M), whose columns are as in `sample_of`."""
+    """Return samples of recorded messages of a class: shape (3, M), with columns as in `sample_of`."""
     step = -(-len(messages) // _MOST_READ) or 1
     read = [sample_of(path, deserialize(data, cls), stamp_ns) for _, stamp_ns, data in messages[::-1][::step]]
     return np.array([sample for sample in reversed(read) if sample is not None], dtype=np.float64).reshape(-1, 3).T

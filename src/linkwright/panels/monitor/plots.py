@@ -1,4 +1,4 @@
-"""Samples of numeric fields for the page's plots, in batches."""
+"""Samples of numeric fields for the page's plots, sent in batches."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _MOST_WAITING = 4096
 
 
 class SampleQueue:
-    """Collects samples until they are taken. Too many are thinned out, so that it stays short."""
+    """Collects samples until they are taken, and thins them out when there are too many."""
 
     def __init__(self) -> None:
         self._received: list[float] = []
@@ -48,7 +48,7 @@ class SampleQueue:
         return len(self._values)
 
     def add(self, received: float, stamp: float, value: float) -> None:
-        """Add a sample: receive time and the stamp of its header (NaN for none), seconds, and the value."""
+        """Add a sample: receive time and header stamp (NaN if there is none) in seconds, and the value."""
         self._received.append(received)
         self._stamps.append(stamp)
         self._values.append(value)
@@ -57,7 +57,7 @@ class SampleQueue:
             self._received, self._stamps, self._values = thinned_out
 
     def take(self) -> NDArray[np.float64]:
-        """Return all of them, thinned out to fit a frame: array, shape (3, M); the queue is empty then."""
+        """Empty the queue, and return its samples, shape (3, M), thinned out to fit a frame."""
         taken = thinned(self._array(), MOST_SENT)
         self._received, self._stamps, self._values = [], [], []
         return taken
@@ -67,13 +67,14 @@ class SampleQueue:
 
 
 def thinned(samples: NDArray[Any], most: int) -> NDArray[Any]:
-    """Return a subset of the samples of limited size whose plot looks the same.
+    """Return a subset of the samples, of limited size, whose plot looks the same.
 
-    Of each of equal shares in a row the least and the greatest value stay, in their order.
+    The samples are divided into consecutive shares of equal size. Of each share the minimum and the maximum are kept,
+    in their order.
 
     Args:
         samples: array, shape (3, M); values are in the last row.
-        most: an even number of samples to keep.
+        most: the number of samples to keep, which must be even.
     """
     count = samples.shape[1]
     if count <= most:
@@ -106,7 +107,7 @@ _LONGEST_PAST = 600.0
 
 @dataclass(slots=True)
 class _Series:
-    """A series of a page."""
+    """A series that a page plots."""
 
     series: PlotSeries
     path: FieldPath | None
@@ -119,18 +120,21 @@ class _Series:
         return self.past is not None or len(self.queue) > 0
 
     def take(self) -> NDArray[np.float64]:
-        """Return the samples to send: array, shape (3, M). Those of the past come first; the page restarts there."""
+        """Return the samples to send, shape (3, M), and remove them from the queue.
+
+        Past samples, if any, are first, and the page then restarts the series.
+        """
         waiting, past, self.past = self.queue.take(), self.past, None
         return waiting if past is None else np.hstack([past, waiting])
 
     def forget(self) -> None:
-        """Drop queued samples: they belong to another time than the one shown."""
+        """Drop queued samples, which belong to another time than the displayed one."""
         self.past = None
         self.queue.take()
 
 
 class _Channel:
-    """A topic with all the series that plot its numbers."""
+    """A topic with all the series that plot its values."""
 
     def __init__(self, context: ViewerContext, topic: str, came: Callable[[], None]) -> None:
         self._came = came
@@ -138,12 +142,12 @@ class _Channel:
         self.tap = TopicTap(context, topic, self._receive, changed=self._class_changed)
 
     def add(self, series: _Series) -> None:
-        """Feed a series from the topic."""
+        """Begin to add samples of the topic to a series."""
         self.series.append(series)
         self._check(series)
 
     def remove(self, series: _Series) -> None:
-        """Stop feeding a series."""
+        """Stop adding samples to a series."""
         self.series.remove(series)
 
     def _class_changed(self) -> None:
@@ -152,7 +156,7 @@ class _Channel:
         self._came()
 
     def _check(self, series: _Series) -> None:
-        """Return whether the path leads to a number of the topic's messages."""
+        """Set the error of a series, or clear it if the path leads to a number in the topic's messages."""
         if series.path is None:
             return
         error = self.tap.error
@@ -177,7 +181,7 @@ class _Channel:
         self._came()
 
     def set_past(self, seconds: Callable[[_Series], float], timeline: TimelineFeature) -> None:
-        """Give the waiting series their samples from before the time that is shown."""
+        """Give the series without errors their samples from before the displayed time."""
         cls = self.tap.message_class
         feeding = [series for series in self.series if series.error is None and series.path is not None]
         if cls is None or not feeding:
@@ -188,13 +192,13 @@ class _Channel:
             assert series.path is not None
             samples = past_samples(series.path, cls, messages)
             if samples.shape[1] > 0:
-                series.forget()  # the waiting samples are among them
+                series.forget()  # the past samples include the queued ones
                 series.past = thinned(samples, _MOST_PAST)
         self._came()
 
 
 class _Plots:
-    """The series of a page. The frame with their samples is made when its turn in the outbox comes."""
+    """The series of a page. The frame with their samples is created when the outbox sends it."""
 
     key = "samples"
 
@@ -208,13 +212,13 @@ class _Plots:
         return any(series.has_samples() for series in self.series.values())
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
-        """Return the frame with all samples that wait; see `Changes`."""
+        """Return the frame with all waiting samples; see `Changes`."""
         ready = [(identity, series.take()) for identity, series in self.series.items() if series.has_samples()]
         return pack_samples(ready) if ready else None, seen
 
 
 class PlotsFeature(PageFeature):
-    """Sends pages the numbers that they plot; subscribes to a topic while a page has a series of it."""
+    """Sends pages the values that they plot; subscribes to a topic while a page plots a series of it."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -227,7 +231,7 @@ class PlotsFeature(PageFeature):
         self._reading: asyncio.TimerHandle | None = None
 
     def receive(self, page: Page, message: AskFields | WatchSeries) -> None:
-        """Carry out a request."""
+        """Handle a request."""
         if isinstance(message, WatchSeries):
             self._watch(page, message.series, message.seconds)
         else:
@@ -236,7 +240,7 @@ class PlotsFeature(PageFeature):
                 self._ask(page, message.topic)
 
     def page_closed(self, page: Page) -> None:
-        """Forget the page's series."""
+        """Drop the page's series."""
         self._stop_asking(page)
         self._watch(page, [], 0.0)
         self._pages.pop(page, None)
@@ -269,7 +273,7 @@ class PlotsFeature(PageFeature):
             plots.sent = []
             self._turn.ask()
 
-    # --- samples before the time that is shown -----------------------------------------------------------------
+    # --- samples from before the displayed time ----------------------------------------------------------------
 
     def _jumped(self) -> None:
         for plots in self._pages.values():
@@ -326,10 +330,10 @@ class PlotsFeature(PageFeature):
             if plots.has_samples():
                 page.outbox.put(plots.key, plots)
 
-    # --- what can be plotted -----------------------------------------------------------------------------------
+    # --- fields that can be plotted ----------------------------------------------------------------------------
 
     def _ask(self, page: Page, topic: str) -> None:
-        """Answer with the fields that can be plotted, and again once a message has the lengths of arrays."""
+        """Send the fields that can be plotted, and again once a message shows the lengths of arrays."""
 
         def receive(message: Any, _: MessageInfo) -> None:
             page.send(TopicFields(topic, message.TYPE_NAME, plot_fields(type(message), message), None))
@@ -346,7 +350,7 @@ class PlotsFeature(PageFeature):
         return TopicFields(tap.topic, cls.TYPE_NAME, plot_fields(cls), None)
 
     def _class_without_publishers(self, tap: TopicTap) -> Any:
-        """Return the class of a topic that only has subscribers so far, or None if they do not agree."""
+        """Return the message class of a topic without publishers; None if its subscribers disagree."""
         from linkwright.messages import get_message
 
         types = self.context.node.graph.topics().get(tap.topic, [])

@@ -1,4 +1,4 @@
-"""The teleop pad: velocities of pages as geometry_msgs/msg/Twist or TwistStamped, and zero when they fall silent."""
+"""The teleop pad: publishes pages' velocities as Twist or TwistStamped, and zero when they fall silent."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ _SILENCE = 0.4
 
 
 class TeleopFeature(PageFeature):
-    """Publishes the velocities of pages' pads; a publisher exists while a page has its pad open."""
+    """Publishes the velocities of pages' pads. A publisher exists while a page has its pad open."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._pads: dict[Page, _Pad] = {}
 
     def receive(self, page: Page, message: AimTeleop | Drive) -> None:
-        """Set the target of a page's pad, or publish a velocity."""
+        """Set the topic of a page's pad, or publish a velocity."""
         if isinstance(message, Drive):
             pad = self._pads.get(page)
             if pad is not None:
@@ -54,7 +54,7 @@ class TeleopFeature(PageFeature):
 
 
 class _Pad:
-    """The pad of a page."""
+    """The teleop pad of a page."""
 
     def __init__(self, node: Node, target: TeleopTarget, publish: Callable[[TeleopState], None]) -> None:
         self._node = node
@@ -66,7 +66,7 @@ class _Pad:
         self.review()
 
     def drive(self, velocity: Drive) -> None:
-        """Publish a velocity, and stop unless another one follows soon."""
+        """Publish a velocity; the robot is stopped unless another one follows soon."""
         if self._topic is None or len(velocity.linear) != 3 or len(velocity.angular) != 3:
             return
         self._cancel()
@@ -75,13 +75,13 @@ class _Pad:
             self._silent = asyncio.get_running_loop().call_later(_SILENCE, self._stop)
 
     def close(self) -> None:
-        """Stop, and destroy the publisher."""
+        """Stop the robot, and destroy the publisher."""
         self._stop()
         if self._topic is not None:
             self._topic.close()
 
     def review(self) -> None:
-        """Adopt the type of the topic's subscribers, and count them. A pad in use keeps its type."""
+        """Adopt the message type of the topic's subscribers, and count them; a pad in use keeps its type."""
         target = self._target
         try:
             if self._topic is None:
@@ -99,7 +99,7 @@ class _Pad:
         self._set_state(TeleopState(topic.name, topic.type_name.rpartition("/")[2], listeners, None))
 
     def _stop(self) -> None:
-        """Publish zero, unless it was published last."""
+        """Publish zero, unless the last velocity was already zero."""
         if self._silent is not None:
             self._cancel()
             if self._topic is not None:

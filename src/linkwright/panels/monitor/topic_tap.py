@@ -1,4 +1,4 @@
-"""A subscription to any topic, with the type and the quality of service of its publishers."""
+"""A subscription to any topic, with the type and QoS of its publishers."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from linkwright.rviz.context import ViewerContext
 
 
 class Paced:
-    """Work that is requested more often than it is done.
+    """Limits the rate of work that is requested more often than it needs to be done.
 
     Args:
-        work: the work.
-        period: least time between two turns, seconds.
+        work: the function that does the work.
+        period: the minimum time between two calls, seconds.
     """
 
     def __init__(self, work: Callable[[], None], period: float) -> None:
@@ -36,12 +36,12 @@ class Paced:
         self._due: asyncio.TimerHandle | None = None
 
     def ask(self) -> None:
-        """Do the work as soon as the period since the last time is over."""
+        """Request the work, which is done as soon as the period since the last time has passed."""
         if self._due is None:
             self._due = self._loop.call_at(max(self._loop.time(), self._done_at + self._period), self._do)
 
     def cancel(self) -> None:
-        """Drop a request that was not carried out yet."""
+        """Drop a request that has not been carried out yet."""
         if self._due is not None:
             self._due.cancel()
             self._due = None
@@ -57,17 +57,17 @@ _DEPTH = 500
 
 
 class TopicTap:
-    """Receives a topic until it is closed.
+    """Receives the messages of a topic until it is closed.
 
-    The topic need not exist yet. As ``ros2 topic echo`` does, it requests the strongest quality of service that all
-    publishers offer; if a later publisher offers less, it subscribes again.
+    The topic need not exist yet. Like ``ros2 topic echo``, it requests the strongest QoS that all publishers offer. If
+    a later publisher offers less, it subscribes again.
 
     Args:
         context: the context of the subscribing node, whose remappings do not apply: topics are named as in the graph.
-        topic: absolute name.
+        topic: the absolute name of the topic.
         take: called with each message, or its bytes, and the message info.
         raw: whether `take` gets CDR bytes.
-        changed: called when `error` or `message_class` has another value.
+        changed: called when `error` or `message_class` changes.
     """
 
     def __init__(
@@ -113,7 +113,7 @@ class TopicTap:
         ]
         types = sorted({publisher.type_name for publisher in publishers})
         if not types:
-            return  # the last known type stays valid until there are new publishers
+            return  # keep the last known type until there are publishers again
         if len(types) > 1:
             self.error = f"the topic carries more than one type: {', '.join(types)}"
             self._leave()

@@ -1,4 +1,4 @@
-"""The topic monitor: what ``rqt_topic`` shows."""
+"""The topic monitor, the counterpart of ``rqt_topic``."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _LONGEST_TEXT = 400
 
 
 def message_tree(message: Message) -> list[MessageField]:
-    """Return the fields of a message, in their order."""
+    """Return the fields of a message, in order."""
     return _Tree().fields(message)
 
 
@@ -100,7 +100,7 @@ _LEAST_MEASURED_NS = 500_000_000
 
 @dataclass(slots=True)
 class _Request:
-    """The topics that a page lists, measures and opens."""
+    """The topics that a page lists, measures and expands."""
 
     listed: bool = False
     measured: frozenset[str] = frozenset()
@@ -111,7 +111,7 @@ class _Request:
 
 
 class _Gauge:
-    """Measures a topic, and stores its last message as bytes: it is decoded only when a page shows it."""
+    """Measures a topic, and stores its last message as bytes, which are decoded only when a page shows it."""
 
     def __init__(self, feature: TopicsFeature, context: ViewerContext, topic: str) -> None:
         self._feature = feature
@@ -121,7 +121,7 @@ class _Gauge:
         self.tap = TopicTap(context, topic, self._receive, raw=True, changed=feature.measure_soon)
 
     def message(self) -> TopicMessage | None:
-        """Return the last message; None before there is one, or if its bytes cannot be decoded."""
+        """Return the last message; None before the first one, or if its bytes cannot be decoded."""
         from linkwright.messages import deserialize
 
         if self.last is None or self.tap.message_class is None:
@@ -146,7 +146,7 @@ class _Gauge:
 
 
 class TopicsFeature(PageFeature):
-    """Lists topics, and measures those that a page requests; it has no other subscriptions."""
+    """Lists topics, and measures those that a page requests; it subscribes to no other topics."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -156,7 +156,7 @@ class TopicsFeature(PageFeature):
         self._messages = Paced(self._send_messages, _MESSAGES_PERIOD)
 
     def receive(self, page: Page, message: WatchTopics) -> None:
-        """Replace the topics that a page lists, measures and opens."""
+        """Replace the topics that a page lists, measures and expands."""
         before = self._requests.get(page, _Request())
         opened = frozenset(message.opened)
         request = _Request(message.listed, frozenset(message.measured), opened, before.sent if message.listed else None)
@@ -167,7 +167,7 @@ class TopicsFeature(PageFeature):
             self._send_lists()
 
     def page_closed(self, page: Page) -> None:
-        """Forget the page's requests."""
+        """Drop the page's requests."""
         if self._requests.pop(page, None) is not None:
             self._update_subscriptions()
 
@@ -177,18 +177,18 @@ class TopicsFeature(PageFeature):
         self._update_subscriptions()
 
     def came(self, topic: str) -> None:
-        """Note that a topic has a message for the pages that opened it."""
+        """Record that a topic has a new message for the pages that expanded it."""
         for request in self._requests.values():
             if topic in request.opened:
                 request.due.add(topic)
                 self._messages.ask()
 
     def measure_soon(self) -> None:
-        """Send the figures of a topic with the next ones."""
+        """Request that measurements are sent as soon as their period allows."""
         self._figures.ask()
 
     def _update_subscriptions(self, page: Page | None = None) -> None:
-        """Open the subscriptions that pages need and close all others; answer the page with new requests."""
+        """Open the subscriptions that pages need, and close all others; answer a page that has new requests."""
         requests = self._requests.values()
         requested = set[str]().union(*(request.measured | request.opened for request in requests))
         for topic in self._gauges.keys() - requested:
