@@ -1,4 +1,4 @@
-"""RViz: its configuration files, its displays and views, and how messages become what they draw."""
+"""RViz: configuration files, displays and views, and the conversion of messages to drawable content."""
 
 from typing import TYPE_CHECKING
 

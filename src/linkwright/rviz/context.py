@@ -1,4 +1,4 @@
-"""The context of a viewer: its node, files and pages, changes of the graph, and topics that others publish."""
+"""A viewer's context: its node, files and pages, graph changes, and the topics published by other nodes."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class PublishedTopics:
         self._topics: dict[str, list[str]] = {}
 
     def publishers(self, topic: str) -> list[tuple[str, str]]:
-        """Return node and type of each publisher of a topic, by its name in the viewer's node.
+        """Return the node and type of each publisher of a topic, whose name is resolved in the viewer's node.
 
         Raises:
             InvalidTopicNameError: the name is not valid.
@@ -66,7 +66,7 @@ class PublishedTopics:
             self._node.graph.watch(self._changed)
         if self._is_current:
             return
-        self._is_current = True  # first: a change during the lookup is seen by the next one
+        self._is_current = True  # set first, so that a change during the lookup triggers another lookup
         publishers: dict[str, list[tuple[str, str]]] = {}
         topics: dict[str, set[str]] = {}
         own = self._node.get_name()
@@ -84,10 +84,10 @@ _QUIET = 0.1
 
 
 class GraphChanges:
-    """Calls callbacks for the changes of a graph; costs nothing while there are none.
+    """Calls callbacks when the graph changes; costs nothing while there are no callbacks.
 
     Args:
-        graph: the graph to listen to; its changes may happen in any thread.
+        graph: the graph to listen to; its changes may occur in any thread.
     """
 
     def __init__(self, graph: GraphQueries) -> None:
@@ -97,13 +97,13 @@ class GraphChanges:
         self._due: asyncio.TimerHandle | None = None
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Register a callback for changes, called on the loop."""
+        """Register a callback for changes; it is called on the event loop."""
         if not self._listeners:
             self._graph.watch(self._changed)
         self._listeners[changed] = None
 
     def unwatch(self, changed: Callable[[], None]) -> None:
-        """Unregister a callback of `watch`."""
+        """Unregister a callback that was passed to `watch`."""
         self._listeners.pop(changed, None)
         if not self._listeners:
             self._graph.unwatch(self._changed)
@@ -112,7 +112,7 @@ class GraphChanges:
                 self._due = None
 
     def _changed(self) -> None:
-        with suppress(RuntimeError):  # the loop is closed: there are no listeners any more
+        with suppress(RuntimeError):  # the loop is closed, so there are no listeners any more
             self._loop.call_soon_threadsafe(self._wait)
 
     def _wait(self) -> None:
@@ -127,10 +127,10 @@ class GraphChanges:
 
 
 class HeldTime:
-    """Whether the viewer's clock is held at a past time, by the component that shows the past.
+    """Whether the component that shows the past holds the viewer's clock at a past time.
 
     Attributes:
-        switching: whether the clock is being held or released: displays must not reset because of that.
+        switching: whether the clock is being held or released, in which case displays must not reset.
     """
 
     def __init__(self) -> None:
@@ -138,7 +138,7 @@ class HeldTime:
         self.switching = False
 
     def show(self, clock: ROSClock, now_ns: int) -> bool:
-        """Make a clock show a time, nanoseconds since the epoch; False if it shows simulated time."""
+        """Hold a clock at a time, nanoseconds since the epoch; return False if the clock shows simulated time."""
         if clock.ros_time_is_active and not self._held:
             return False
         clock.override(now_ns)
@@ -147,7 +147,7 @@ class HeldTime:
         return True
 
     def release(self, clock: ROSClock) -> None:
-        """Make the clock show the present."""
+        """Make the clock show the current time again."""
         if self._held:
             self._held = False
             self._switch(clock, held=False)
@@ -165,17 +165,17 @@ class ViewerContext:
     """The node, the files and the pages of a viewer.
 
     Attributes:
-        node: the viewer's node, to subscribe and to log with.
-        library: reads descriptions, each once for the whole process.
+        node: the viewer's node, for subscriptions and logging.
+        library: reads descriptions, each of them once per process.
         finder: finds packages.
         pages: every open page.
-        transforms: the history of transforms, to place messages by the time in their headers.
-        graph_changes: notifies of nodes or endpoints that appear or disappear.
-        published: the topics that others publish.
+        transforms: the history of transforms, used to place messages at the time in their headers.
+        graph_changes: notifies callbacks when nodes or endpoints appear or disappear.
+        published: the topics that other nodes publish.
         meshes: the folders that pages may read from.
-        downloads: files that were made for a page, to be fetched once.
-        held_time: whether its clock shows the past.
-        display_ids: ids that no display of the viewer has had.
+        downloads: files created for a page, each of which can be fetched once.
+        held_time: whether the viewer's clock shows the past.
+        display_ids: an iterator of IDs that no display of the viewer has used.
         folder: the working directory of the program, for files that pages create.
     """
 
@@ -193,10 +193,10 @@ class ViewerContext:
     folder: Path = field(default_factory=Path.cwd)
 
     def report(self, diagnostic: Diagnostic) -> None:
-        """Show a finding in the terminal."""
+        """Report a finding in the terminal."""
         where = f"{diagnostic.span}: " if diagnostic.span else ""
         logger = self.node.get_logger()
-        if diagnostic.severity is Severity.ERROR:  # two calls, as a logger identifies calls by their lines
+        if diagnostic.severity is Severity.ERROR:  # two calls, because a logger identifies calls by their lines
             logger.error(where + diagnostic.message)
         else:
             logger.warning(where + diagnostic.message)

@@ -22,15 +22,15 @@ _ROOMY = 2.5
 
 
 class ImageCompressor:
-    """Makes WebP files of the images of a display; remembers for each size the last suitable step."""
+    """Compresses a display's images to WebP; remembers the last suitable compression step for each size."""
 
     def __init__(self) -> None:
         self._steps: dict[int, int] = {}
 
     def compressed(self, frame: ImageFrame, size: int) -> ImageFrame:
-        """Return the image as a WebP of at most so many bytes, or the smallest one.
+        """Return the image as a WebP file of at most `size` bytes, or the smallest possible file.
 
-        A file that cannot be read stays unchanged: the page reports the error.
+        An image that cannot be read is returned unchanged, because the page reports the error.
         """
         try:
             return self._compressed(frame, size)
@@ -70,7 +70,7 @@ def _opened(frame: ImageFrame) -> Any:
 
 
 def _encoded(image: Any, reduction: int, quality: int) -> tuple[bytes, int, int]:
-    """Return a WebP, and its columns and rows."""
+    """Return a WebP file, and its width and height in pixels."""
     small = image.reduce(reduction) if reduction > 1 else image
     file = BytesIO()
     small.save(file, "WEBP", quality=quality, method=0)

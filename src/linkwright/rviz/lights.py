@@ -14,10 +14,10 @@ _DOWN = (0.0, 0.0, -1.0)
 
 
 def lights_of(world: World) -> list[LightScene]:
-    """Return the lights of a world and of its links that are on, without those that cannot be placed.
+    """Return the lights of a world and of its links that are on, except lights whose pose is not known.
 
     Args:
-        world: with its includes resolved.
+        world: the world, with its includes resolved.
     """
     return [*_of_world(world), *_of_links(world)]
 

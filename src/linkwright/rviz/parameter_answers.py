@@ -1,4 +1,4 @@
-"""Waiting for another node's answers about its parameters."""
+"""Waits for another node's responses to requests about its parameters."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _LOOK_EVERY = 0.05
 
 
 class NoAnswerError(Exception):
-    """A node did not answer in time; the text names the request."""
+    """Raised when a node did not answer in time; the text names the request."""
 
 
 async def services_ready(client: AsyncParameterClient) -> None:
@@ -36,7 +36,7 @@ async def answer(client: AsyncParameterClient, future: Awaitable[Any]) -> Any:
     """Return the response to a request that a method of a client has sent.
 
     Raises:
-        NoAnswerError: there is none in time.
+        NoAnswerError: there was no response in time.
     """
 
     async def wait() -> Any:

@@ -25,12 +25,12 @@ _ENDLESS = 30.0
 
 @dataclass(frozen=True, slots=True)
 class ShownLidar:
-    """A lidar as pages draw it.
+    """A lidar in the form that pages draw.
 
     Attributes:
-        scene: the message about it for pages.
-        measured: the numbers of rows and columns that it measures.
-        every: draw every n-th row and every m-th column.
+        scene: the description of the lidar for pages.
+        measured: the number of rows and columns that the lidar measures.
+        every: the step between drawn rows and the step between drawn columns.
     """
 
     scene: LidarScene
@@ -39,10 +39,10 @@ class ShownLidar:
 
 
 def sensors_of(world: World) -> tuple[list[ShownLidar], list[CameraScene]]:
-    """Return the lidars and the cameras of a world, in the order of the file; none if one cannot be placed.
+    """Return the lidars and the cameras of a world in file order; both lists are empty if one cannot be placed.
 
     Args:
-        world: with its includes resolved.
+        world: the world, with its includes resolved.
     """
     lidars: list[ShownLidar] = []
     cameras: list[CameraScene] = []

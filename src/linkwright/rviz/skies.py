@@ -21,7 +21,7 @@ def daylight(sky: Sky | None) -> float | None:
 
 
 def fog_of(fog: Fog | None) -> FogScene | None:
-    """Return the fog, or None."""
+    """Return the fog for pages, or None if there is no fog."""
     if fog is None or fog.type.strip() in ("", "none") or not all(map(isfinite, (fog.start, fog.end, fog.density))):
         return None
     density = None if fog.type.strip() == "linear" else max(fog.density, 0.0)

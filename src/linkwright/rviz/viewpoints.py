@@ -1,4 +1,4 @@
-"""The first view of a world: its own camera, or one that shows its robots."""
+"""The initial view of a world: the camera in its file, or a view of its robots."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _POSE_NUMBERS = 6
 
 
 def camera_of(world: World) -> Transform | None:
-    """Return the pose of the camera in a world's file, in the frame of the world; it looks along its x axis.
+    """Return the pose of the camera in a world's file, in the world frame; it looks along its x axis.
 
-    Gazebo classic reads ``<gui><camera><pose>``, gz the ``<camera_pose>`` of the window's plugin that renders. None
-    if the world has neither, or not six numbers.
+    Gazebo classic reads ``<gui><camera><pose>``; gz reads the ``<camera_pose>`` of the GUI plugin that renders. None if
+    the world has neither, or the pose does not have six numbers.
     """
     gui = world.element.first("gui") if world.element is not None else None
     if gui is None:
@@ -30,7 +30,7 @@ def camera_of(world: World) -> Transform | None:
 
 
 def robots_of(world: World) -> list[str]:
-    """Return the names of the models that are robots: they move, and have sensors, plugins, or some moving joints."""
+    """Return the names of the models that are robots: not static, with sensors, plugins or several moving joints."""
     return [model.name for model in world.models if not model.static and _is_robot(model)]
 
 

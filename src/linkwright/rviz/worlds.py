@@ -1,4 +1,4 @@
-"""A world for the page: the shapes of the links of all its models, and their first poses."""
+"""A world for the page: the shapes of the links of all its models, and their initial poses."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ _PoseInLink = Callable[[RawPose], Transform]
 
 @dataclass(slots=True)
 class WorldContent:
-    """The content drawn for a world.
+    """The content that is drawn for a world.
 
     Attributes:
         links: all links that draw something or move, named as in the poses of the simulation: ``robot::arm::tip``.
-        poses: the first pose of each in the world.
-        problems: link -> problems with its files.
+        poses: the initial pose of each link in the world.
+        problems: the problems with files by link.
     """
 
     links: list[LinkScene] = field(default_factory=list)
@@ -61,11 +61,11 @@ def content_of(world: World, index: MeshIndex) -> WorldContent:
     """Return the content drawn for a world.
 
     Args:
-        world: with its includes resolved.
-        index: finds the files that it names, and collects them.
+        world: the world, with its includes resolved.
+        index: finds the files that the world refers to, and collects them.
 
     Raises:
-        FrameError: an element in it cannot be placed.
+        FrameError: the pose of an element cannot be determined.
     """
     return _Builder(index).build(world)
 
@@ -117,7 +117,7 @@ class _Builder:
         return shape if shape.size else None
 
     def _form(self, link: str, shape: Shape, geometry: SdfShape) -> Transform | None:
-        """Set kind and size of a shape; returns its pose in the geometry's frame, None for the identity."""
+        """Set the kind and size of a shape; returns its pose in the geometry's frame, None for the identity."""
         match geometry:
             case Box():
                 shape.kind, shape.size = "box", list(geometry.size)
@@ -171,7 +171,7 @@ class _Builder:
             shape.texture = self._located(link, texture.diffuse, IMAGE_TYPES)
 
     def _heights(self, link: str, uri: str) -> NDArray[np.float32] | None:
-        """Return the heights of a heightmap, with the simulation's reader; browsers read no TIFF or 16-bit grey."""
+        """Return the heights of a heightmap, read as in the simulation; browsers read no TIFF or 16-bit grey."""
         if self._located(link, uri, IMAGE_TYPES) is None:
             return None
         try:
@@ -213,7 +213,7 @@ class _Builder:
 
 
 def _maps(workflow: Workflow) -> tuple[str, ...]:
-    """Return the images of a surface except that of its colour, in the order of `Surface`."""
+    """Return the images of a surface except the colour image, in the order of `Surface`."""
     reflecting = (workflow.normal_map, workflow.roughness_map, workflow.metalness_map)
     return (*reflecting, workflow.emissive_map, workflow.ambient_occlusion_map)
 
@@ -225,9 +225,9 @@ def _reflects(workflow: Workflow) -> bool:
 
 
 def _look(material: Material) -> tuple[Sequence[float] | None, str]:
-    """Return colour and image of a material: None and nothing if it sets none.
+    """Return the colour and image of a material; None and an empty string if it sets none.
 
-    Scripts were read with the world; for a model from a text only Gazebo's own names are known here.
+    Material scripts were read with the world. For a model from text, only Gazebo's own material names are known here.
     """
     named = gazebo_look(material.script.name) if material.script else None
     if named is not None:

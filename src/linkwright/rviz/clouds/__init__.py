@@ -1,4 +1,4 @@
-"""Points from messages: positions, channels, and the colours that RViz's transformers give them."""
+"""Point data from messages: positions, channels, and the colours of RViz's transformers."""
 
 from linkwright.rviz.clouds.colours import AXES, TRANSFORMERS, ColourSettings, coloured, supported_transformers
 from linkwright.rviz.clouds.depth import DepthCamera, DepthCloudBuilder

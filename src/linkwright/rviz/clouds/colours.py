@@ -1,4 +1,4 @@
-"""RViz's colour transformers: those that a cloud supports, and the colours they give its points."""
+"""RViz's colour transformers: which ones a cloud supports, and the colours that they give its points."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ Colours = NDArray[np.uint8]
 
 @dataclass(frozen=True, slots=True)
 class ColourSettings:
-    """The properties of the colour transformers; colours are red, green, blue, 0 to 255.
+    """The properties of the colour transformers. Colours are RGB, 0 to 255.
 
     Attributes:
         transformer: one of `TRANSFORMERS`.
         channel: the channel of ``Intensity``.
         rainbow: whether ``Intensity`` uses the rainbow instead of a gradient from `darkest` to `brightest`.
         inverted: whether that rainbow is reversed.
-        darkest: colour of the least intensity.
-        brightest: colour of the largest intensity.
-        intensities: least and largest intensity, or None for those of the cloud.
+        darkest: the colour of the minimum intensity.
+        brightest: the colour of the maximum intensity.
+        intensities: minimum and maximum intensity, or None to use the cloud's own.
         axis: the axis of ``AxisColor``, an index of `AXES`.
-        values: least and largest coordinate, or None for those of the cloud.
+        values: minimum and maximum coordinate, or None to use the cloud's own.
         in_fixed_frame: whether ``AxisColor`` uses coordinates in the Fixed Frame.
     """
 
@@ -77,8 +77,8 @@ def coloured(
 
     Args:
         points: the points.
-        settings: with a transformer that the points support.
-        pose: the pose of their frame in the Fixed Frame, x y z qx qy qz qw; None for points in the Fixed Frame.
+        settings: the colour settings; the points must support the transformer.
+        pose: the pose of the points' frame in the Fixed Frame, x y z qx qy qz qw; None if they are in the Fixed Frame.
     """
     if settings.transformer == INTENSITY:
         return _by_intensity(points, settings)
@@ -98,7 +98,7 @@ def _by_intensity(points: Points, settings: ColourSettings) -> tuple[Colours, tu
     values = points.values(settings.channel)
     if values is None and settings.channel == "intensity":
         values = points.values("intensities")
-    if values is None:  # RViz leaves the points white
+    if values is None:  # RViz draws the points white
         return np.full((len(points), 4), 255, np.uint8), None
     computed = None
     if settings.intensities is None:
@@ -128,7 +128,7 @@ def _by_axis(
 
 
 def _bounds(values: NDArray[Any], limit: float) -> tuple[float, float]:
-    """Return the least and the largest of the finite values, or 0 and 0 without any."""
+    """Return the minimum and maximum of the finite values, or 0 and 0 if there are none."""
     if values.size == 0:
         return 0.0, 0.0
     least, largest = float(values.min()), float(values.max())
@@ -174,12 +174,12 @@ def _gradient(corners: NDArray[np.float64], steps: int) -> NDArray[np.uint32]:
 
 
 def _packed_channel(points: Points) -> str | None:
-    """Return the later of ``rgb`` and ``rgba``, as RViz looks for them."""
+    """Return the name of the packed colour channel, ``rgb`` or ``rgba``: the later one, as in RViz."""
     return next((name for name in reversed(list(points.channels)) if name in ("rgb", "rgba")), None)
 
 
 def _unpacked(points: Points) -> Colours:
-    """Return the bytes of ``rgb``, else of ``rgba``: blue, green, red and alpha from the lowest on."""
+    """Return the bytes of ``rgb`` or else ``rgba``: blue, green, red, alpha, lowest byte first."""
     name = "rgb" if "rgb" in points.channels else "rgba"
     values = points.channels[name]
     packed = np.ascontiguousarray(values.astype(values.dtype.newbyteorder("<"))).view(np.uint8).reshape(-1, 4)

@@ -1,4 +1,4 @@
-"""Points from a depth image: the depths along the camera's rays, coloured by an image of the same size."""
+"""Points from a depth image: depths along the camera's rays, coloured by an image of the same size."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class DepthCamera:
     """The pinhole camera of a depth image.
 
     Attributes:
-        columns: x over z of each column's rays, float32, shape (width,).
-        rows: y over z of each row's rays, float32, shape (height,).
+        columns: x / z of the rays of each column, float32, shape (width,).
+        rows: y / z of the rays of each row, float32, shape (height,).
         pixel: the width of a pixel one metre away, metres.
     """
 
@@ -32,10 +32,10 @@ class DepthCamera:
 
     @classmethod
     def of(cls, info: Any, width: int, height: int) -> DepthCamera:
-        """Return the camera of a sensor_msgs/msg/CameraInfo, for images of a size.
+        """Return the camera described by a sensor_msgs/msg/CameraInfo, for images of the given size.
 
         Raises:
-            BadCloudError: the image has another size than the camera, or the camera has no focal length.
+            BadCloudError: the image size differs from the camera's, or the camera has no focal length.
         """
         binning_x, binning_y = max(1, info.binning_x), max(1, info.binning_y)
         roi_width, roi_height = info.roi.width or info.width, info.roi.height or info.height
@@ -67,13 +67,13 @@ class DepthCamera:
 
 
 class DepthCloudBuilder:
-    """Makes points from depth images; with occlusion compensation covered points stay for a while."""
+    """Converts depth images to points; with occlusion compensation, covered points stay for a while."""
 
     def __init__(self) -> None:
         self._hidden: _Hidden | None = None
 
     def reset(self) -> None:
-        """Drop the covered points: the camera moved or restarted."""
+        """Discard the covered points, because the camera moved or restarted."""
         self._hidden = None
 
     def points(
@@ -85,17 +85,18 @@ class DepthCloudBuilder:
         keep_covered: float | None = None,
         now: float = 0.0,
     ) -> Points:
-        """Return the points of an image.
+        """Return the points of a depth image.
 
         Args:
             depth: sensor_msgs/msg/Image, 16UC1 or mono16 in millimetres or 32FC1 in metres.
             camera: a camera of the image's size.
             colour: an image of the same size; None for white points.
-            keep_covered: seconds that covered points stay, in half their colour; None to drop them at once.
-            now: the time, seconds.
+            keep_covered: seconds that covered points stay, at half their brightness; None to drop them immediately.
+            now: the current time, seconds.
 
         Raises:
-            BadCloudError: the image is of another encoding, too short, or not of the colour image's size.
+            BadCloudError: the image's encoding is not supported, its data is too short, or its size differs from the
+                colour image's.
         """
         metres, valid = _metres(depth)
         if colour is not None and (colour.width, colour.height) != (depth.width, depth.height):
@@ -150,7 +151,7 @@ class _Hidden:
 
 
 def _metres(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-    """Return the depths, shape (height, width), and a mask of the valid ones."""
+    """Return the depths in metres, shape (height, width), and a mask of the valid ones."""
     kinds = {"32FC1": "f4", "16UC1": "u2", "mono16": "u2"}
     kind = kinds.get(image.encoding)
     if kind is None:
@@ -180,7 +181,7 @@ def _metres(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
 
 
 def _packed(image: DecodedImage) -> NDArray[np.uint32]:
-    """Return colours in the form of ``rgb`` channels."""
+    """Return the image's colours packed like an ``rgb`` channel."""
     rgb = image.rgb().astype(np.uint32)
     packed: NDArray[np.uint32] = np.bitwise_or(rgb[..., 0] << 16 | rgb[..., 1] << 8, rgb[..., 2], dtype=np.uint32)
     return packed

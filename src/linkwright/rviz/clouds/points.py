@@ -1,6 +1,6 @@
-"""The points of clouds and laser scans: their coordinates and their other fields.
+"""The points of clouds and laser scans: coordinates and other fields.
 
-Scans are projected as laser_geometry does.
+Scans are projected in the same way as by laser_geometry.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from linkwright.diagnostics import phrase
 from linkwright.geometry.arrays import rotate, slerp
 from linkwright.page.protocol.points import CloudPoints
 
-# sensor_msgs/msg/PointField: constants of its `datatype`
+# the `datatype` constants of sensor_msgs/msg/PointField
 _FORMATS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
 _AXES = ("x", "y", "z")
 
 
 class BadCloudError(ValueError):
-    """A message cannot be shown as points; the text is for the status row ``Message``."""
+    """Raised when a message cannot be shown as points; the text is for the status row ``Message``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +118,7 @@ def points_of_legacy_cloud(message: Any) -> Points:
 
 
 def _fields(fields: Any, step: int) -> dict[str, tuple[str, int]]:
-    """Return type and offset of each field by name."""
+    """Return the type and the offset of each field by name."""
     found: dict[str, tuple[str, int]] = {}
     for point_field in fields:
         kind = _FORMATS.get(point_field.datatype)
@@ -138,7 +138,7 @@ def _fields(fields: Any, step: int) -> dict[str, tuple[str, int]]:
 
 
 def _coordinates(data: NDArray[np.uint8], offsets: list[int], order: str, step: int, count: int) -> NDArray[np.float32]:
-    """Return the coordinates, shape (N, 3), in memory of their own, so that the message can be freed."""
+    """Return a copy of the coordinates, shape (N, 3), so that the message can be freed."""
     first = offsets[0]
     if offsets == [first, first + 4, first + 8]:
         view: NDArray[Any] = np.ndarray((count, 3), order + "f4", data.data, first, (step, 4))
@@ -153,7 +153,7 @@ def _column(data: NDArray[np.uint8], offset: int, kind: str, step: int, count: i
 
 
 def decimated(cloud: CloudPoints, size: int) -> CloudPoints:
-    """Return every k-th point, so that the arrays have at most so many bytes; at least one point."""
+    """Return every k-th point, at least one, so that the arrays have at most `size` bytes."""
     n_bytes = cloud.positions.nbytes + cloud.colours.nbytes
     step = -(-n_bytes // max(1, size))
     if step <= 1:
@@ -162,7 +162,7 @@ def decimated(cloud: CloudPoints, size: int) -> CloudPoints:
 
 
 class ScanProjector:
-    """Projects scans; caches the directions of the rays for scans of the same shape."""
+    """Projects laser scans to points; caches the ray directions for scans of the same shape."""
 
     def __init__(self) -> None:
         self._shape: tuple[float, float, int] = (0.0, 0.0, 0)
@@ -171,8 +171,9 @@ class ScanProjector:
     def points(self, scan: Any) -> Points:
         """Return the points at which rays hit an object, in the frame of the scanner.
 
-        A ray counts whose range is at least `range_min` and less than `range_max`; rays without an echo are infinite or
-        NaN. The channels are ``intensity`` (where the scan has one for each ray), ``range`` and ``index``.
+        A ray counts if its range is at least `range_min` and less than `range_max`; the range of a ray without an echo
+        is infinite or NaN. The channels are ``intensity`` (if the scan has one value for each ray), ``range`` and
+        ``index``.
         """
         ranges = np.frombuffer(scan.ranges, np.float32)
         with np.errstate(invalid="ignore"):
@@ -194,7 +195,7 @@ class ScanProjector:
         return Points(positions[valid], {name: values[valid] for name, values in channels.items()})
 
     def _rays(self, first: float, step: float, count: int) -> NDArray[np.float32]:
-        """Return cosine and sine of each ray's angle."""
+        """Return the cosine and the sine of each ray's angle."""
         shape = (first, step, count)
         if shape != self._shape:
             with np.errstate(all="ignore"):
@@ -205,13 +206,13 @@ class ScanProjector:
 
 
 def swept(points: Points, parts: NDArray[Any], first: NDArray[np.float64], last: NDArray[np.float64]) -> Points:
-    """Return points that were measured on the way from one pose to another, in the frame of the poses.
+    """Return points measured by a moving sensor, transformed to the frame of its first and last pose.
 
     Args:
-        points: in the moving frame.
-        parts: the part of the way, 0 to 1, at which each point was seen; shape (N,).
-        first: pose at the beginning, x y z qx qy qz qw.
-        last: pose at the end.
+        points: points in the moving frame.
+        parts: the fraction of the motion, 0 to 1, at which each point was measured; shape (N,).
+        first: the pose at the beginning, x y z qx qy qz qw.
+        last: the pose at the end.
     """
     turned = rotate(slerp(first[3:], last[3:], parts), points.positions)
     moved = turned + first[:3] + parts[:, np.newaxis] * (last[:3] - first[:3])

@@ -1,1 +1,1 @@
-"""Configuration files of RViz: read, checked against the declared properties, changed in place, saved."""
+"""Reading, checking, editing and saving of RViz configuration files."""

@@ -1,4 +1,7 @@
-"""Reads and writes configuration files: encoding and line ends are kept, and a file is never left half written."""
+"""Reading and writing of configuration files.
+
+The encoding and line endings are preserved, and a file is never left half written.
+"""
 
 from __future__ import annotations
 
@@ -16,10 +19,10 @@ MAXIMUM_SIZE = 16 * 1024 * 1024
 
 @dataclass(frozen=True, slots=True)
 class FileForm:
-    """The encoding and line ends of a file.
+    """The encoding and line endings of a file.
 
     Attributes:
-        mark: whether it begins with a byte order mark.
+        mark: whether the file begins with a byte order mark.
         newline: the line ending.
     """
 
@@ -29,17 +32,17 @@ class FileForm:
 
 @dataclass(frozen=True, slots=True)
 class FileState:
-    """Identifies the version of a file that was read: its time of change, nanoseconds, and its size, bytes."""
+    """The modification time (ns) and size (bytes) that identify the version of a file that was read."""
 
     modified: int
     size: int
 
 
 def read(path: Path) -> tuple[str, FileForm]:
-    """Return the text of a file, with its own line ends, and its form.
+    """Return the text of a file, with its line endings unchanged, and its form.
 
     Raises:
-        LinkwrightError: RVIZ101, it cannot be read.
+        LinkwrightError: RVIZ101, the file cannot be read.
     """
     try:
         content = read_file(path, MAXIMUM_SIZE + 1)
@@ -68,10 +71,10 @@ def read(path: Path) -> tuple[str, FileForm]:
 
 
 def write(path: Path, text: str, form: FileForm) -> None:
-    """Write a text to a file, completely or not at all.
+    """Write text to a file, completely or not at all.
 
     Raises:
-        LinkwrightError: RVIZ104, it cannot be written.
+        LinkwrightError: RVIZ104, the file cannot be written.
     """
     content = (codecs.BOM_UTF8 if form.mark else b"") + text.encode("utf-8")
     try:

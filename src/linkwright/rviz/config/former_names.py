@@ -1,7 +1,7 @@
 """The names that RViz 1 used for classes, and for keys of displays and tools that have changed since.
 
-A file of RViz 1 says ``Class: rviz/Grid``, ``Topic: /scan`` with ``Queue Size`` beside it, and ``Robot Description``.
-It is read through these names, and edits are written under them, so that it stays a file of RViz 1.
+A file of RViz 1 contains ``Class: rviz/Grid``, ``Topic: /scan`` next to ``Queue Size``, and ``Robot Description``.
+Such a file is read through these names, and edits are written under them, so that it remains a file of RViz 1.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def is_former(cls: str) -> bool:
 
 
 def modern_class(cls: str) -> str:
-    """Return RViz 2's name of a class of displays, tools or views, for a name of either RViz."""
+    """Return RViz 2's class name of a display, tool or view, given its name in either RViz."""
     if not is_former(cls):
         return cls
     name = cls.removeprefix(_FORMER)
@@ -36,12 +36,12 @@ def modern_class(cls: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class FormerKey:
-    """The key of RViz 1 for a property of RViz 2.
+    """The RViz 1 key for a property of RViz 2.
 
     Attributes:
-        key: beside the display's ``Class``.
-        read: today's spelling of a value.
-        write: RViz 1's spelling of a value of today.
+        key: the key, at the same level as the display's ``Class``.
+        read: converts a value to its spelling in RViz 2.
+        write: converts a value to its spelling in RViz 1.
     """
 
     key: str
@@ -50,7 +50,7 @@ class FormerKey:
 
 
 def former_keys(cls: str) -> Mapping[Path, FormerKey]:
-    """Return the keys of RViz 1 for a class, by the path of the property; none for a class of RViz 2."""
+    """Return the RViz 1 keys for a class by property path; empty for a class of RViz 2."""
     if not is_former(cls):
         return _NONE
     return _BY_CLASS.get(cls.removeprefix(_FORMER), _TOPIC)

@@ -1,7 +1,7 @@
-"""The files of configurations: recent ones, folders of the server, and recovery files of unsaved edits.
+"""Locations of configuration files: recent files, folders of the server, and recovery files of unsaved edits.
 
-When the program ends, unsaved edits are stored in a recovery file for each configuration: RViz asks
-before its window is closed, Ctrl-C in a terminal does not.
+When the program ends, the unsaved edits of each configuration are stored in a recovery file. RViz asks before its
+window is closed, but Ctrl-C in a terminal does not.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ _MOST_ENTRIES = 1000
 
 
 def configuration_path(text: str, folder: Path) -> Path:
-    """Return the file that a page names.
+    """Return the path of the configuration file that a page requested.
 
     Args:
-        text: absolute, from ``~``, or from the folder.
+        text: an absolute path, a path from ``~``, or a path relative to the folder.
         folder: the folder of the open file.
 
     Raises:
-        LinkwrightError: RVIZ105, its name, or that of the file it is a link to, does not end in ``.rviz``.
+        LinkwrightError: RVIZ105, the file's name, or the name of its link target, does not end in ``.rviz``.
     """
     try:
         path = Path(os.path.normpath(folder / Path(text).expanduser()))
@@ -56,14 +56,14 @@ def configuration_path(text: str, folder: Path) -> Path:
 
 
 def list_folder(text: str | None, folder: Path) -> Folder:
-    """Return the folders and configuration files of a folder, without hidden ones.
+    """Return the subfolders and configuration files in a folder, without hidden ones.
 
     Args:
-        text: absolute, from ``~``, or from the folder of the open file; None for that one.
+        text: an absolute path, a path from ``~``, or a path relative to `folder`; None for `folder` itself.
         folder: the folder of the open file.
 
     Raises:
-        LinkwrightError: RVIZ106, it cannot be read.
+        LinkwrightError: RVIZ106, the folder cannot be read.
     """
     folders, files = [], []
     path = folder / (text or "")
@@ -78,7 +78,7 @@ def list_folder(text: str | None, folder: Path) -> Folder:
                         folders.append(entry.name)
                     elif entry.name.endswith(ENDING) and entry.is_file():
                         files.append(entry.name)
-    except (OSError, ValueError, RuntimeError) as error:  # the last when there is no such user
+    except (OSError, ValueError, RuntimeError) as error:  # RuntimeError: `~user` names an unknown user
         reason = getattr(error, "strerror", None) or error
         raise LinkwrightError(
             Diagnostic(
@@ -86,13 +86,13 @@ def list_folder(text: str | None, folder: Path) -> Folder:
             )
         ) from None
     parent = None if path.parent == path else str(path.parent)
-    from linkwright.page.protocol.configuration import Folder  # here, because tokens of pages need only the folder
+    from linkwright.page.protocol.configuration import Folder  # imported here because page tokens need only the folder
 
     return Folder(str(path), parent, sorted(folders)[:_MOST_ENTRIES], sorted(files)[:_MOST_ENTRIES])
 
 
 class RecentFiles:
-    """The files that were opened or saved last, stored for the next start.
+    """The most recently opened or saved files, stored for the next start.
 
     Args:
         store: the file with their paths; by default one in the user's state folder.
@@ -104,18 +104,18 @@ class RecentFiles:
 
     @property
     def paths(self) -> list[str]:
-        """Newest first."""
+        """The paths of the recent files, newest first."""
         if self._paths is None:
             self._paths = self._read()
         return self._paths
 
     def add(self, path: Path) -> None:
-        """Put a file at the top; a list that cannot be saved is not an error."""
+        """Put a file at the top of the list; failing to save the list is not an error."""
         name = str(path)
         self._write([name, *(other for other in self._read() if other != name)][:_MOST_RECENT])
 
     def remove(self, path: Path) -> None:
-        """Drop a file that is gone."""
+        """Remove a file that no longer exists from the list."""
         paths = self._read()
         if str(path) in paths:
             self._write([other for other in paths if other != str(path)])
@@ -142,7 +142,7 @@ _HOW = phrase("open that file in the page, or with 'rviz2 -d'")
 
 
 def recovery_folder() -> Path:
-    """Return the folder of these files, below the user's state."""
+    """Return the folder of the recovery files, below the user's state folder."""
     return state_folder() / "unsaved"
 
 
@@ -153,14 +153,14 @@ def recovery_file(config: RvizConfig) -> Path:
         path = _absolute(config.path)
         return folder / path.name if path.parent == _absolute(folder) else folder / _name_for(str(path))
     name = config.document.source.name
-    return folder / (f"{_UNNAMED}{ENDING}" if name.startswith("<") else _name_for(name))  # "<default>" and the like
+    return folder / (f"{_UNNAMED}{ENDING}" if name.startswith("<") else _name_for(name))  # such as "<default>"
 
 
 def keep_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
-    """Write configurations that have unsaved edits into the recovery files.
+    """Write configurations that have unsaved edits to recovery files.
 
     Returns:
-        Where each of them is (RVIZ301), or that it is lost (RVIZ104).
+        For each configuration, where it was stored (RVIZ301), or that it is lost (RVIZ104).
     """
     diagnostics: list[Diagnostic] = []
     taken: set[Path] = set()
@@ -200,8 +200,9 @@ def forget_unsaved(former: Path | None, config: RvizConfig, recent: RecentFiles)
     """Remove the recovery file of a configuration that has just been saved.
 
     Args:
-        former: the file that it had before: a recovery file that is now saved elsewhere is not needed any more.
-        config: the configuration, with the file that it was saved to.
+        former: the file that the configuration had before; a recovery file is not needed any more after saving
+            elsewhere.
+        config: the configuration, whose path is the file that it was saved to.
         recent: the list from which removed files are dropped.
     """
     done = {recovery_file(config)}
@@ -239,8 +240,8 @@ def _is_saved(config: RvizConfig, text: str) -> bool:
 
 
 def _name_for(name: str) -> str:
-    """Return a name in the recovery folder for a configuration of this name, which a page may have chosen."""
-    mark = hashlib.sha256(os.fsencode(name)).hexdigest()[:8]  # distinguishes files of the same name
+    """Return a safe file name in the recovery folder for a configuration name, which a page may have chosen."""
+    mark = hashlib.sha256(os.fsencode(name)).hexdigest()[:8]  # distinguishes equal names
     stem = _UNFIT.sub("_", Path(name).stem)[:_LONGEST_NAME]
     return f"{stem or _UNNAMED}-{mark}{ENDING}"
 

@@ -1,14 +1,13 @@
-"""The panels of a .rviz file: the open ones of RViz's panels, and the settings of the Time panel.
+"""The panels of a .rviz file: RViz's open panels, and the settings of the Time panel.
 
-RViz keeps the first in three places. ``Panels`` lists the panels that there are. The state of the window has those of
-them that the user closed. ``Window Geometry`` says of those that went with a whole side of the window that they are
-``collapsed``; RViz looks at that only while ``Hide Left Dock`` or ``Hide Right Dock`` is on, and shows them again
-otherwise.
+RViz stores the open panels in three places. ``Panels`` lists the existing panels. The window state records which of
+them the user closed. ``Window Geometry`` marks panels as ``collapsed`` if a whole side of the window was hidden. RViz
+uses that mark only while ``Hide Left Dock`` or ``Hide Right Dock`` is on; otherwise it shows those panels again.
 
-The state is what Qt's ``QMainWindow::saveState`` gives. It has for each dock the byte 0xfb, its name (the number of its
-bytes in four bytes, then UTF-16, both big endian) and a byte of flags: 1 shown, 2 floating. Of several of one name the
-first is the dock; the others are places that it had once. RViz keeps all this as hexadecimal digits. Everything else in
-it stays as it is.
+The state is the output of Qt's ``QMainWindow::saveState``. For each dock it contains the byte 0xfb, the dock's name
+(its length in bytes as four bytes, then UTF-16, both big endian) and a byte of flags: 1 shown, 2 floating. If a name
+occurs several times, the first one is the dock, and the others are its former places. RViz stores all this as
+hexadecimal digits. Everything else in the state remains unchanged.
 """
 
 from __future__ import annotations
@@ -54,7 +53,9 @@ _NOT_OF_RVIZ_1 = frozenset({"transformation", "navigation"})
 
 
 class PanelsConfig:
-    """``Panels`` of a file, and their state in its ``Window Geometry``. Panels of other classes stay unchanged.
+    """The ``Panels`` list of a file, and the panels' state in its ``Window Geometry``.
+
+    Panels of other classes stay unchanged.
 
     Args:
         document: the file.
@@ -80,11 +81,11 @@ class PanelsConfig:
         return list(dict.fromkeys(panel for panel in found if panel is not None))
 
     def show(self, panels: Collection[PanelName]) -> bool:
-        """Write the open panels; returns whether that changed the file.
+        """Write the open panels, and return whether that changed the file.
 
-        Closing a panel does what RViz does: its entry stays and the window's state says that it is hidden. Where the
-        file has no such state, or has the entry only since the panel was opened here, the entry goes, as with RViz's
-        *Delete Panel*; opened again, it is back in its place.
+        Closing a panel does what RViz does: its entry stays, and the window's state marks it as hidden. Where the file
+        has no such state, or has the entry only since the panel was opened here, the entry is removed, as with RViz's
+        *Delete Panel*. When the panel is opened again, the entry is restored to its position.
         """
         before = self.shown
         for panel in _NAMES:
@@ -126,7 +127,7 @@ class PanelsConfig:
         return is_shown(self._document.text(*_STATE) or "", name) is not False
 
     def _set_shown(self, section: Section, *, shown: bool) -> None:
-        """Write whether a panel is shown into the window's state, if the file has one."""
+        """Mark a panel as shown or hidden in the window state, if the file has one."""
         name = section.text("Name") or ""
         state = self._document.text(*_STATE) or ""
         if is_shown(state, name) not in (None, shown):
@@ -135,7 +136,10 @@ class PanelsConfig:
             self._document.put((_GEOMETRY, name, "collapsed"), "false")
 
     def _add(self, panel: PanelName) -> Section | None:
-        """Return an entry for a panel: its former one, in its place, or a new one; None if the file cannot have one."""
+        """Return an entry for a panel: its former one, in its position, or a new one.
+
+        None if the file cannot have one.
+        """
         there = list(self._document.sections(_PANELS))
         gone = next((section for section in self._order if _panel(section) == panel and section not in there), None)
         if gone is None:
@@ -164,8 +168,8 @@ def is_shown(state: str, name: str) -> bool | None:
     """Return whether a dock is shown; None if the state does not have it, or was not written by Qt.
 
     Args:
-        state: the hexadecimal digits.
-        name: the name of the dock, which is that of its panel.
+        state: the window state as hexadecimal digits.
+        name: the name of the dock, which is also the name of its panel.
     """
     content = _bytes(state)
     at = _flags(content, name)
@@ -173,7 +177,7 @@ def is_shown(state: str, name: str) -> bool | None:
 
 
 def with_shown(state: str, name: str, *, shown: bool) -> str:
-    """Return the state with a dock shown or hidden; unchanged if it already is or is unknown."""
+    """Return the state with a dock shown or hidden; unchanged if the dock is already so or is unknown."""
     content = _bytes(state)
     at = _flags(content, name)
     if at is None or bool(content[at] & _SHOWN) is shown:
@@ -183,7 +187,7 @@ def with_shown(state: str, name: str, *, shown: bool) -> str:
 
 
 def _bytes(state: str) -> bytes:
-    """Return the bytes of hexadecimal digits; empty for any other text."""
+    """Decode hexadecimal digits to bytes; return empty bytes for any other text."""
     try:
         content = bytes.fromhex(state)
     except ValueError:
@@ -192,7 +196,7 @@ def _bytes(state: str) -> bytes:
 
 
 def _flags(content: bytes, name: str) -> int | None:
-    """Return the index of the byte with a dock's flags."""
+    """Return the index of the byte with a dock's flags, or None if it was not found."""
     text = name.encode("utf-16-be", "surrogatepass")
     mark = _DOCK + len(text).to_bytes(4, "big") + text
     at = content.find(mark) + len(mark)
@@ -201,14 +205,17 @@ def _flags(content: bytes, name: str) -> int | None:
 
 @dataclass(frozen=True, slots=True)
 class Synchronization:
-    """The mode of the Time panel's synchronization, and the source display."""
+    """The synchronization mode of the Time panel, and the source display."""
 
     mode: SyncMode = "Off"
     source: str = ""
 
 
 def read_synchronization(document: Section) -> Synchronization:
-    """Return the Time panel's settings; RViz reads them only with ``Experimental``, which later RViz 1 omits."""
+    """Return the Time panel's settings.
+
+    RViz reads them only with ``Experimental``, which later versions of RViz 1 omit.
+    """
     panel = _time_panel(document)
     if panel is None or not (_text(panel, "Experimental").lower() == "true" or _is_always_on(panel)):
         return Synchronization()

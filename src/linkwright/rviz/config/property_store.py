@@ -1,4 +1,4 @@
-"""The values of one display's properties: read from its part of the .rviz file, written back there."""
+"""The property values of a display, read from its section of the .rviz file and written back to it."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ _MANY = 30
 
 
 def property_id(owner: str, path: Iterable[str]) -> str:
-    """Return the id of the property at a path of names below a display (or ``global``), as in `protocol`."""
+    """Return the ID of the property at a path of names below a display (or ``global``), as used in `protocol`."""
     return "/".join((owner, *(name.replace("%", "%25").replace("/", "%2F") for name in path)))
 
 
 class PropertyStore:
-    """Values by path of names: those that were set, else the file's, else the defaults.
+    """Property values by path of names: values that were set, then the file's, then the defaults.
 
     Args:
-        owner: the display's id, or ``global``.
-        section: the file, or the display's part of it; values set are written into it at once.
-        schema: returns the current specs, which change for displays whose rows come and go.
-        report: called with a value in the file that cannot be used; the default is used then.
-        base: keys from the section to the mapping with the values; made only when a value is set.
+        owner: the display's ID, or ``global``.
+        section: the file, or the display's section of it; values that are set are written to it immediately.
+        schema: returns the current specs, which change for displays whose rows appear and disappear.
+        report: called with a finding about a value in the file that cannot be used; the default is used instead.
+        base: the keys from the section to the mapping with the values, which is created only when a value is set.
         frames: returns the names offered for a ``frame``.
-        former: the keys of RViz 1, for a section that it wrote.
+        former: the RViz 1 keys, for a section that RViz 1 wrote.
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class PropertyStore:
         return str(self.get(*path))
 
     def check(self, path: Path, value: object) -> None:
-        """Raise the errors of `set`, without storing a value."""
+        """Raise the errors that `set` would raise, without storing a value."""
         accept(self._spec(path), value)
 
     def set(self, path: Path, value: object) -> PropertyValue:
@@ -87,7 +87,7 @@ class PropertyStore:
 
         Raises:
             KeyError: when the schema has no such property.
-            ValueError: when the property takes no such value.
+            ValueError: when the property does not accept the value.
         """
         spec = self._spec(path)
         taken = accept(spec, value)
@@ -97,7 +97,9 @@ class PropertyStore:
         return taken
 
     def set_read_only(self, path: Path, value: PropertyValue) -> bool:
-        """Set a value that the file does not store, as of a read-only property; returns whether it is new.
+        """Set a value that the file does not store, such as that of a read-only property.
+
+        Return whether the value changed.
 
         Raises:
             KeyError: when the schema has no such property.
@@ -110,7 +112,7 @@ class PropertyStore:
 
     @contextmanager
     def recording(self) -> Iterator[list[Memory]]:
-        """Collect the file's entries for the properties set inside the block, for `recall`."""
+        """Collect the file's former entries for properties set inside the block, for `recall`."""
         memories: list[Memory] = []
         self._recorded = memories
         try:
@@ -119,11 +121,11 @@ class PropertyStore:
             self._recorded = None
 
     def memories(self, of: Iterable[Memory]) -> list[Memory]:
-        """Return the present state of the keys of other memories."""
+        """Return the current state of the keys that other memories cover."""
         return [self._place().memory(memory.key) for memory in of]
 
     def recall(self, memories: Iterable[Memory]) -> list[Path]:
-        """Restore entries of the file; returns the paths of the values that changed."""
+        """Restore entries of the file, and return the paths of the values that changed."""
         keys = {memory.key for memory in memories}
         place = self._place()
         for memory in memories:
@@ -135,7 +137,7 @@ class PropertyStore:
         return [path for path, value in old.items() if self.get(*path) != value]
 
     def find(self, identity: str) -> Path | None:
-        """Return the path of the property with an id, or None."""
+        """Return the path of the property with an ID, or None."""
         specs = self._schema()
         owner, *names = identity.split("/")
         path = tuple(name.replace("%2F", "/").replace("%25", "%") for name in names)
@@ -149,11 +151,11 @@ class PropertyStore:
         return path
 
     def identity(self, path: Path) -> str:
-        """Return the id of the property at a path."""
+        """Return the ID of the property at a path."""
         return property_id(self._owner, path)
 
     def rows(self) -> list[Property]:
-        """Return the rows for the page."""
+        """Return the property rows for the page."""
         return [self._row(spec, ()) for spec in self._schema() if self._shown(spec)]
 
     def is_condition(self, path: Path) -> bool:
@@ -161,7 +163,7 @@ class PropertyStore:
         return any(_depends(spec, path) for spec in self._schema())
 
     def frame_changes(self) -> list[PropertyChanged]:
-        """Return the properties whose value is the name of a frame, with the frames offered now."""
+        """Return change messages for the properties of kind ``frame``, with the frame names offered now."""
         return [
             PropertyChanged(self.identity((spec.name,)), self.get(spec.name), self._frames())
             for spec in self._schema()
@@ -240,7 +242,7 @@ class PropertyStore:
         self._place().put(path, text, string=string, nested=nested)
 
     def _former_key(self, path: Path) -> FormerKey | None:
-        """Return the key under which RViz 1 kept a value, unless the file has the present key."""
+        """Return the RViz 1 key of a value, unless the file has the current key."""
         return self._former.get(path) if self._section.scalar(*self._base, *path) is None else None
 
     def _place(self) -> Section:
@@ -254,14 +256,14 @@ class PropertyStore:
         return former.key if former else path[0]
 
     def _is_kept(self, path: Path) -> bool:
-        """Return whether there is such a property, and the file has it."""
+        """Return whether the property exists and is stored in the file, unlike a read-only one."""
         try:
             return not self._spec(path).read_only
         except KeyError:
             return False
 
     def _named(self, specs: Schema, name: str) -> PropertySpec | None:
-        """Return the first property of that name; an index finds it among many, such as the links of a robot."""
+        """Return the first property with a name, using an index for long lists such as a robot's links."""
         if len(specs) < _MANY:
             return next((spec for spec in specs if spec.name == name), None)
         if self._many[0] is not specs:
@@ -287,12 +289,13 @@ def _depends(spec: PropertySpec, path: Path) -> bool:
 
 
 def qos_of(properties: PropertyStore, name: str = "Topic", *, lasting: bool | None = None) -> QoSProfile:
-    """Return the quality of service that a Topic property requests.
+    """Return the QoS profile that a Topic property requests.
 
     Args:
         properties: the display's properties.
         name: the name of the property.
-        lasting: whether to receive messages that were published before, whatever the property says.
+        lasting: whether to receive messages that were published earlier, which overrides the property; None to use the
+            property.
     """
     get = properties.text
     keep_all = get(name, "History Policy") == "Keep All"

@@ -1,4 +1,4 @@
-"""RViz's configuration files (``.rviz``): read, preserved, changed in place, written back."""
+"""The RViz configuration file (``.rviz``): reading, editing in place, and writing without loss of unknown content."""
 
 from __future__ import annotations
 
@@ -116,14 +116,14 @@ class DisplayConfig:
     """An entry of ``Displays``.
 
     Args:
-        section: its part of the file.
-        group: the group it is in, or None.
-        report: called with entries below it that cannot be used.
+        section: the entry's section of the file.
+        group: the group that contains the display, or None.
+        report: called with findings about entries below it that cannot be used.
 
     Attributes:
-        cls: RViz 2's name of its class, even if the file has RViz 1's.
+        cls: RViz 2's name of the display's class, even if the file has RViz 1's.
         displays: the displays of a group.
-        identity: its id in pages; empty until it has one.
+        identity: the display's ID in pages; empty until it is assigned.
     """
 
     def __init__(
@@ -143,12 +143,12 @@ class DisplayConfig:
 
     @property
     def is_group(self) -> bool:
-        """Whether it contains displays instead of drawing."""
+        """Whether the display is a group, which contains other displays and draws nothing."""
         return self.cls == GROUP
 
     @property
     def name(self) -> str:
-        """The name in the Displays panel; by default that of its class."""
+        """The display's name in the Displays panel; by default the name of its class."""
         scalar = self.section.scalar("Name")
         return scalar.text if scalar else self.cls.rpartition("/")[2]
 
@@ -158,7 +158,7 @@ class DisplayConfig:
 
     @property
     def checked(self) -> bool:
-        """The display's own check box: ``Enabled``, else ``Value``; without both it is off, as in RViz."""
+        """The display's own check box: ``Enabled``, or else ``Value``; off if both are missing, as in RViz."""
         text = self.section.text("Enabled")
         if text is None:
             text = self.section.text("Value")
@@ -174,7 +174,7 @@ class DisplayConfig:
 
     @property
     def box(self) -> list[Memory]:
-        """The values of the keys of the check box, for `recall`."""
+        """The values of the check box's keys, for `recall`."""
         return [self.section.memory(key) for key in _BOX]
 
     @box.setter
@@ -184,11 +184,11 @@ class DisplayConfig:
 
     @property
     def enabled(self) -> bool:
-        """Whether it is drawn: its check box and those of the groups around it are on."""
+        """Whether the display is drawn: its check box and those of all enclosing groups are on."""
         return self.checked and (self.group is None or self.group.enabled)
 
     def walk(self) -> Iterator[DisplayConfig]:
-        """Yield the display and its descendants, each group before its content."""
+        """Yield the display and its descendants, each group before its contents."""
         yield self
         for display in self.displays:
             yield from display.walk()
@@ -197,7 +197,7 @@ class DisplayConfig:
 def read_displays(
     parent: Section, group: DisplayConfig | None, report: Callable[[Diagnostic], None]
 ) -> list[DisplayConfig]:
-    """Return the entries of ``Displays`` in a section; those without a class are reported (RVIZ202) and ignored."""
+    """Return the entries of ``Displays`` in a section; entries without a class are reported (RVIZ202) and ignored."""
     displays = []
     for section in parent.sections(_KEY):
         if section.scalar("Class") is None:
@@ -209,14 +209,14 @@ def read_displays(
 
 
 def place(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig], index: int) -> None:
-    """Insert an entry among those of a parent, in the file too."""
+    """Insert a display into its parent's list of displays and into the file."""
     before = siblings[index].section if index < len(siblings) else None
     yaml_tree.insert_section(parent, _KEY, display.section, before)
     siblings.insert(index, display)
 
 
 def displace(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig]) -> None:
-    """Remove an entry from those of a parent, in the file too."""
+    """Remove a display from its parent's list of displays and from the file."""
     yaml_tree.remove_section(parent, _KEY, display.section)
     siblings.remove(display)
 
@@ -234,28 +234,28 @@ _MODEL_PITCH = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Arrangement:
-    """The order and grouping of the displays: the items of ``Displays`` of each group."""
+    """The order and grouping of the displays: the items of ``Displays`` for each group."""
 
     displays: dict[DisplayConfig | None, list[DisplayConfig]]
     memories: dict[DisplayConfig | None, SequenceMemory]
 
 
 class RvizConfig:
-    """A configuration file.
+    """An RViz configuration file.
 
-    Keys, their order, Qt's window state and displays of classes that are unknown to this program are kept and written
-    back. Missing keys have RViz's defaults and stay missing until they are set. A file without changes is written back
-    to the letter; a changed file loses its comments, as in RViz.
+    Keys, their order, Qt's window state and displays of unknown classes are preserved and written back. Missing keys
+    have RViz's defaults and stay missing until they are set. A file without changes is written back exactly as it was
+    read; a changed file loses its comments, as in RViz.
 
     Attributes:
-        path: the file it was read from or saved to, or None.
+        path: the file that the configuration was read from or saved to, or None.
         document: the whole file.
-        displays: the entries of ``Displays``; groups hold others.
+        displays: the entries of ``Displays``; groups contain others.
         options: the Global Options.
-        views: the current view and the saved ones.
+        views: the current view and the saved views.
         tools: the tools.
         panels: the open panels.
-        warnings: findings on parts of the file that cannot be used.
+        warnings: findings about parts of the file that cannot be used.
     """
 
     def __init__(self, document: Section, path: Path | None = None, form: FileForm | None = None) -> None:
@@ -272,7 +272,7 @@ class RvizConfig:
             self.warnings.append,
             base=(_MANAGER, "Global Options"),
         )
-        self.options.rows()  # before any access, so that all warnings are known from the start
+        self.options.rows()  # read all options now so that all warnings are known from the start
         self.displays: list[DisplayConfig] = read_displays(
             document.section(_MANAGER) or yaml_tree.new_section(document.source), None, self.warnings.append
         )
@@ -284,7 +284,7 @@ class RvizConfig:
 
     @classmethod
     def load(cls, path: str | Path) -> RvizConfig:
-        """Read a file.
+        """Return the configuration read from a file.
 
         Raises:
             LinkwrightError: RVIZ101, it cannot be read; RVIZ102, it is not YAML; RVIZ103, it is not a configuration.
@@ -297,7 +297,7 @@ class RvizConfig:
     def parse(
         cls, text: str, name: str = "<rviz>", path: Path | None = None, form: FileForm | None = None
     ) -> RvizConfig:
-        """Read a text; `name` is its name in messages.
+        """Return the configuration parsed from text; `name` is its name in messages.
 
         Raises:
             LinkwrightError: RVIZ102, it is not YAML; RVIZ103, it is not a configuration.
@@ -312,7 +312,7 @@ class RvizConfig:
 
     @classmethod
     def default(cls) -> RvizConfig:
-        """Return RViz's configuration without a file: a Grid, Fixed Frame ``map``."""
+        """Return RViz's default configuration: a Grid, Fixed Frame ``map``."""
         return cls.parse(_DEFAULT, "<default>")
 
     @classmethod
@@ -324,7 +324,7 @@ class RvizConfig:
         Args:
             fixed_frame: the Fixed Frame, usually the robot's root link.
             size: the size of the robot, for grid and axes; None for RViz's defaults.
-            frames: whether TF is enabled; it covers a robot that has visuals.
+            frames: whether TF is enabled; its axes would cover a robot that has visuals.
             name: the name of the model's file, under which unsaved edits are stored.
         """
         config = cls.parse(_DEFAULT, name)
@@ -350,14 +350,14 @@ class RvizConfig:
         return config
 
     def propose_view(self, values: Mapping[str, Any]) -> None:
-        """Set values of the view until a page has drawn the scene, and fits the camera to it."""
+        """Set provisional view values, used until a page has drawn the scene and fits the camera to it."""
         view = self.views.current
         view.values |= values
         self.views.current = view
         self._unchosen_view = self.views.current
 
     def follow(self, frame: str, distance: float) -> None:
-        """Make the view follow a frame, with grid and axes of RViz's size: for a mobile robot.
+        """Make the view follow a mobile robot's frame, with grid and axes at RViz's default sizes.
 
         Args:
             frame: the robot's frame.
@@ -380,14 +380,14 @@ class RvizConfig:
 
     @property
     def spacing(self) -> float | None:
-        """The usual distance of a link's frame from its parent's, m, while `awaits_size`; None if unknown."""
+        """The typical distance of a link's frame from its parent's, m, while `awaits_size`; None if unknown."""
         size = None if self._proposed is None else self._proposed.size
         return None if size is None else size.spacing
 
     def sizes_for(self, diagonal: float, ground: float = 0.0) -> list[tuple[DisplayConfig, PropertyPath, float]]:
         """Return new values for the default grid and axes of a robot whose size was unknown: display, property, value.
 
-        Only once, and only for properties that the user has not changed since.
+        Sizes are returned only once, and only for properties that the user has not changed since.
 
         Args:
             diagonal: the diagonal of the robot's bounding box, m.
@@ -399,7 +399,7 @@ class RvizConfig:
         return proposed.corrections(diagonal, ground)
 
     def copy(self) -> RvizConfig:
-        """Return a copy that has no file."""
+        """Return a copy of the configuration that has no file."""
         copied = RvizConfig.parse(self.text(), self.document.source.name)
         copied._unchosen_view = self._unchosen_view
         if self._proposed is not None:
@@ -409,7 +409,7 @@ class RvizConfig:
     # --- displays ----------------------------------------------------------------------------------------------
 
     def walk(self) -> Iterator[DisplayConfig]:
-        """Yield every display, each group before its content."""
+        """Yield every display, each group before its contents."""
         for display in self.displays:
             yield from display.walk()
 
@@ -428,7 +428,7 @@ class RvizConfig:
         return DisplayConfig(yaml_tree.copy_section(display.section), None)
 
     def insert(self, display: DisplayConfig, group: DisplayConfig | None = None, index: int | None = None) -> None:
-        """Insert a display into a group, or at the top level: before the display at an index, or last.
+        """Insert a display into a group or the top level: before the display at `index`, or at the end.
 
         Raises:
             ValueError: the target is not a group, or is inside the display itself.
@@ -448,7 +448,7 @@ class RvizConfig:
         return self.make(GROUP, name)
 
     def arrangement(self) -> Arrangement:
-        """Return the present arrangement, for `arrange`."""
+        """Return the current order and grouping of the displays, for `arrange`."""
         groups = [None, *(display for display in self.walk() if display.is_group)]
         return Arrangement(
             {group: list(self.siblings(group)) for group in groups},
@@ -465,7 +465,7 @@ class RvizConfig:
         self._new_sections = yaml_tree.unmake(self._new_sections)
 
     def siblings(self, group: DisplayConfig | None) -> list[DisplayConfig]:
-        """Return the displays in a group, or those at the top level for None."""
+        """Return the displays in a group, or the top-level displays if `group` is None."""
         return self.displays if group is None else group.displays
 
     def _remember(self, group: DisplayConfig | None) -> SequenceMemory:
@@ -473,7 +473,7 @@ class RvizConfig:
         return yaml_tree.remember_sequence(holder, "Displays") if holder is not None else SequenceMemory(None, None)
 
     def _parent(self, group: DisplayConfig | None) -> Section:
-        """Return the section that has ``Displays``; that of the top level is created if it is missing."""
+        """Return the section that contains ``Displays``; the top-level one is created if it is missing."""
         if group is not None:
             return group.section
         manager, made = yaml_tree.make_section(self.document, _MANAGER)
@@ -490,10 +490,12 @@ class RvizConfig:
         return yaml_tree.write(self.document).replace("\n", self._form.newline)
 
     def save(self, path: str | Path | None = None) -> None:
-        """Write to a file, by default the present one, which is the configuration's file from then on.
+        """Write the configuration to a file, by default its current one.
+
+        That file is the configuration's file afterwards.
 
         Raises:
-            ValueError: it has no file and `path` is None.
+            ValueError: the configuration has no file and `path` is None.
             LinkwrightError: RVIZ104, the file cannot be written.
         """
         target = Path(path) if path is not None else self.path
@@ -505,12 +507,12 @@ class RvizConfig:
 
     @property
     def changed_on_disk(self) -> bool:
-        """Return whether another program has changed the file since it was read or saved."""
+        """Whether another program has changed the file since it was read or saved."""
         return self.path is not None and configuration_file.state_of(self.path) not in (self._state, None)
 
 
 class _Proposed:
-    """The proposed values of grid and axes for a robot whose meshes are not measured yet; None for no size."""
+    """The proposed values of grid and axes for a robot whose meshes are not yet measured; None if they have no size."""
 
     def __init__(self, displays: Sequence[DisplayConfig], size: ModelSize | None) -> None:
         self._displays = tuple(displays)
@@ -519,13 +521,13 @@ class _Proposed:
         self._texts = {path: display.section.text(*path) for display, path, _ in found}
 
     def corrections(self, diagonal: float, ground: float) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-        """Return the values that should be different, and were not changed since."""
+        """Return the values that should be different and that the user has not changed since."""
         spacing = diagonal if self.size is None else self.size.spacing
         found = _sizes(self._displays, ModelSize(diagonal, spacing), ground)
         return [change for change in found if change[0].section.text(*change[1]) == self._texts[change[1]]]
 
     def among(self, copies: Mapping[DisplayConfig, DisplayConfig]) -> _Proposed | None:
-        """Return the proposal for copies of the displays, or None if one is gone."""
+        """Return the same proposal for copies of the displays, or None if a display was removed."""
         found = [copies[display] for display in self._displays if display in copies]
         return _Proposed(found, self.size) if len(found) == len(self._displays) else None
 
@@ -536,7 +538,10 @@ _ANY_SIZE = ModelSize(1.0, 1.0)
 def _sizes(
     displays: Sequence[DisplayConfig], size: ModelSize, ground: float = 0.0
 ) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-    """Return values for displays of `RvizConfig.for_model` by a robot's size and ground: display, property, value."""
+    """Return values for the displays of `RvizConfig.for_model`, given a robot's size and ground height.
+
+    Each item is a display, a property and a value.
+    """
     grid, _, tf = displays
     offset = [(grid, ("Offset", "Z"), round(ground, 4))] if ground else []
     return [(grid, ("Cell Size",), size.cell), (tf, ("Marker Scale",), size.marker_scale), *offset]

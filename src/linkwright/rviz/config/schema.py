@@ -1,7 +1,7 @@
 """Property declarations: names, kinds, defaults and bounds, and the validation of values.
 
-From a `PropertySpec` come the row of the page, the reading and writing of the .rviz file, and the checks of the
-page's values. Names and defaults are RViz's; so is clamping a number into its bounds.
+A `PropertySpec` determines the property's row in the page, how the .rviz file is read and written, and how values
+from the page are checked. Names and defaults are RViz's, and so is the clamping of numbers to their bounds.
 """
 
 from __future__ import annotations
@@ -36,22 +36,22 @@ class PropertySpec:
     """The declaration of a property.
 
     Attributes:
-        name: as RViz shows it and as the file spells its key.
+        name: the name that RViz shows, which is also the key in the file.
         kind: the kind of its values; a ``group`` has none.
         default: RViz's default.
         description: the tooltip.
         options: the values of an ``enum``.
-        minimum: of an ``int`` or ``float``, inclusive.
-        maximum: of an ``int`` or ``float``, inclusive.
-        messages: of a ``topic``, the types of the topics offered; by default those of the display.
-        words: of a ``topic``, parts of the names of the topics offered, in lower case; by default any name.
+        minimum: the lower bound of an ``int`` or ``float``, inclusive.
+        maximum: the upper bound of an ``int`` or ``float``, inclusive.
+        messages: for a ``topic``, the types of the topics offered; by default the display's types.
+        words: for a ``topic``, words that the offered topic names contain, in lower case; by default any name.
         children: the rows below it.
-        when: path within the display and value of the property that must hold for this row to be shown; the conditions
-            of that property must hold too.
+        when: the path of another property of the display and the value that it must have for this row to be shown; the
+            conditions of that property must hold too.
         expanded: whether its children are shown at the start.
         nested: whether the file stores its value under ``Value``, because it has children there.
-        hidden: whether it has a value in the file but no row, as properties that RViz hides.
-        read_only: whether only the program sets it; the file does not have it.
+        hidden: whether the property has a value in the file but no row, like properties that RViz hides.
+        read_only: whether only the program sets the property; it is not stored in the file.
         details: the subject of read-only rows that pages add below it, see `Property`.
     """
 
@@ -77,7 +77,10 @@ Schema = tuple[PropertySpec, ...]
 
 
 def vector(name: str, description: str) -> PropertySpec:
-    """Return a property of three floats X, Y, Z in metres, 0 by default, in the form of RViz's VectorProperty."""
+    """Return the declaration of a property with three floats X, Y, Z in metres.
+
+    The default is 0, as in RViz's VectorProperty.
+    """
     return PropertySpec(
         name, "group", description=description, children=tuple(PropertySpec(axis, "float", 0.0) for axis in "XYZ")
     )
@@ -117,10 +120,10 @@ def line_width() -> PropertySpec:
 
 
 def accept(spec: PropertySpec, value: object) -> PropertyValue:
-    """Return the value to store for one that a page sent: converted to the kind's type and clamped to the bounds.
+    """Return the value to store for a value sent by a page, converted to the kind's type and clamped to the bounds.
 
     Raises:
-        ValueError: the property does not accept it; the text states the expected value.
+        ValueError: the property does not accept the value; the text states the expected value.
     """
     if spec.read_only:
         raise ValueError("only the program sets it")
@@ -140,13 +143,13 @@ def from_text(spec: PropertySpec, text: str) -> PropertyValue:
     """Return the value that a scalar of a .rviz file represents.
 
     Raises:
-        ValueError: it represents none; the text states the expected value.
+        ValueError: the text is not a valid value; the message states the expected value.
     """
     return accept(spec, _converted(spec, text.strip()))
 
 
 def in_place_of(spec: PropertySpec) -> PropertyValue:
-    """Return the value for an unreadable text in a file: true for a box, as in RViz, else the default.
+    """Return the value to use for unreadable text in a file: true for a check box, as in RViz, else the default.
 
     To Qt, and so to RViz, every text is true except ``false``, ``0`` and an empty one: ``no`` is true.
     """
@@ -154,7 +157,7 @@ def in_place_of(spec: PropertySpec) -> PropertyValue:
 
 
 def is_on(text: str) -> bool:
-    """Return whether the text of a box in a file means true to RViz, see `in_place_of`."""
+    """Return whether RViz reads the text of a check box in a file as true, see `in_place_of`."""
     return _BOOLEANS.get(text.strip().lower(), True)
 
 
@@ -220,7 +223,7 @@ def _number(spec: PropertySpec, value: object) -> int | float | None:
 
 
 def _converted(spec: PropertySpec, text: str) -> object:
-    """Return the value that Qt reads from a spelling for RViz, or the text itself for `accept` to refuse."""
+    """Convert text as Qt does for RViz, or return it unchanged for `accept` to refuse."""
     kind = spec.kind
     if kind == "bool":
         return _BOOLEANS.get(text.lower(), text)
@@ -278,14 +281,14 @@ def topic_spec(
     when: tuple[Path, str] | None = None,
     messages: tuple[str, ...] = (),
 ) -> PropertySpec:
-    """Return the property of a topic with its quality of service.
+    """Return the declaration of a topic property with its quality of service.
 
     Args:
         name: the name of the property.
-        default: topic.
+        default: the default topic.
         description: the tooltip.
         depth: RViz's default for the queue size.
-        durability: RViz's default.
+        durability: RViz's default for the durability policy.
         filter_size: default number of messages that wait for transforms; None if they need none.
         durability_help: the tooltip of ``Durability Policy``.
         when: as `PropertySpec.when`.

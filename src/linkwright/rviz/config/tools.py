@@ -1,6 +1,6 @@
 """RViz's tools: the properties of each class, and the tools of a .rviz file.
 
-How a tool uses the mouse is the page's part: `frontend/src/scene/tools`. Names, topics and defaults are RViz's
+The page implements how a tool uses the mouse, see `frontend/src/scene/tools`. Names, topics and defaults are RViz's
 (rviz_default_plugins) and nav2's (nav2_rviz_plugins).
 """
 
@@ -36,7 +36,7 @@ class ToolKind:
 
 
 def _topic(default: str, description: str) -> PropertySpec:
-    """Return a Topic to publish to, with its quality of service; it need not exist yet."""
+    """Return the declaration of a topic to publish to, with its quality of service; the topic need not exist yet."""
     return replace(topic_spec(default=default, description=description), kind="string")
 
 
@@ -94,7 +94,7 @@ USUAL_TOOLS = tuple(cls for cls in TOOL_KINDS if cls.startswith("rviz_default_pl
 
 
 def tool_name(cls: str) -> str:
-    """Return the label of a tool's button: for an unknown class its name with spaces, as in RViz."""
+    """Return the label of a tool's button; for an unknown class, its class name with spaces, as in RViz."""
     kind = TOOL_KINDS.get(cls)
     return kind.name if kind else re.sub(r"(?<!^)(?=[A-Z])", " ", cls.rpartition("/")[2])
 
@@ -111,10 +111,10 @@ class ToolEntry:
     """An entry of ``Tools``.
 
     Attributes:
-        id: stable while the file is open.
-        cls: RViz 2's name of its class, even if the file has RViz 1's.
-        section: its part of the file; that of an unknown class is kept unchanged.
-        properties: its values.
+        id: an ID that is stable while the file is open.
+        cls: RViz 2's name of the tool's class, even if the file has RViz 1's.
+        section: the tool's section of the file; the section of an unknown class is kept unchanged.
+        properties: the values of the tool's properties.
     """
 
     id: str
@@ -147,7 +147,7 @@ class ToolsConfig:
 
     @property
     def entries(self) -> list[ToolEntry]:
-        """The tools, in their order."""
+        """The tools, in the order of their entries."""
         return list(self._entries.values())
 
     def find(self, identity: str) -> ToolEntry | None:
@@ -170,7 +170,7 @@ class ToolsConfig:
         return self._remember(cls, section)
 
     def remove(self, identity: str) -> ToolEntry:
-        """Remove a tool, and return it.
+        """Remove a tool and return it.
 
         Raises:
             KeyError: there is no such tool.
@@ -182,7 +182,7 @@ class ToolsConfig:
         return entry
 
     def list_all(self) -> None:
-        """Write the default tools into a file that lists none, before one of them is changed."""
+        """Write the default tools to a file that lists none, before one of them is changed."""
         if not self._are_listed:
             for entry in self._entries.values():
                 insert_section(self._manager(), _TOOLS, entry.section)

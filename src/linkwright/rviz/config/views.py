@@ -1,7 +1,7 @@
-"""RViz's views: properties of each class, current and saved views of a .rviz file, and sizes for a robot.
+"""RViz's views: the properties of each class, the current and saved views of a .rviz file, and sizes for a robot.
 
-From the properties come the rows of the Views panel, the reading and writing of ``Views`` and the checks of pages'
-values. How each class turns its values into a camera, and what the mouse does to them, is the page's:
+The properties determine the rows of the Views panel, how ``Views`` is read and written, and how values from pages are
+checked. The page implements how each class turns its values into a camera, and how the mouse changes them, see
 `frontend/src/state/views`. Names and defaults are RViz's (rviz_common ``ViewController``, rviz_default_plugins).
 """
 
@@ -33,11 +33,11 @@ _LARGEST_FOCAL_SHAPE = 0.05
 
 @dataclass(frozen=True, slots=True)
 class ModelSize:
-    """Lengths of a robot, m.
+    """The size of a robot and its typical link spacing, in metres.
 
     Attributes:
         diagonal: the diagonal of its bounding box.
-        spacing: from a link's frame to that of its parent, for most links.
+        spacing: the distance from a link's frame to its parent's frame, for most links.
     """
 
     diagonal: float
@@ -50,18 +50,21 @@ class ModelSize:
 
     @property
     def marker_scale(self) -> float:
-        """The scale of TF's axes at which they are visible beside the links and do not cover them."""
+        """The scale at which TF's axes are visible next to the links without covering them."""
         axis = min(max(self.spacing / 2, self.diagonal / 40), self.diagonal / 10)
         return _rounded(axis / _RVIZ_AXIS)
 
     @property
     def focal_shape(self) -> float:
-        """Diameter of the disc at the focal point, m; RViz's default for robots that are large enough."""
+        """The diameter of the disc at the focal point, m; RViz's default for robots that are large enough."""
         return min(_LARGEST_FOCAL_SHAPE, _rounded(self.diagonal / 15))
 
     @property
     def cell(self) -> float:
-        """The grid's cell size, m: a power of ten; ten cells are wider than the robot, but one is not much wider."""
+        """The grid's cell size in metres, a power of ten.
+
+        Ten cells are wider than the robot, but one is not much wider.
+        """
         return float(10.0 ** math.floor(math.log10(self.diagonal * 1.5)))
 
 
@@ -166,7 +169,7 @@ def value_paths(schema: Schema) -> dict[str, Path]:
 
 
 def view_classes() -> list[ViewClass]:
-    """Return the classes for the page."""
+    """Return the view classes for the page."""
     return [
         ViewClass(cls, [_row(spec, ()) for spec in schema if not spec.hidden], _defaults(schema))
         for cls, schema in VIEW_SCHEMAS.items()
@@ -232,14 +235,14 @@ class ViewEntry:
 
     @property
     def view(self) -> View:
-        """Return the current view; a copy."""
+        """A copy of the current view."""
         return View(self._view.cls, self._view.name, dict(self._view.values))
 
     def set(self, view: View) -> None:
-        """Write a view; equal values keep their spelling.
+        """Write a view; values that have not changed keep their spelling.
 
         Raises:
-            ValueError: its class is unknown, or does not have one of the values.
+            ValueError: the view's class is unknown, or does not have one of the values.
         """
         if view == self._view:
             return
@@ -262,7 +265,7 @@ class ViewEntry:
         self._view = self._read()
 
     def _write_class(self, cls: str) -> None:
-        """Write another class, and remove the keys that only the former class has."""
+        """Change the class of the view, and remove the keys that only the former class has."""
         scalar = self._section.scalar(*self._base, "Class")
         written = modern_class(scalar.text) if scalar else ""
         if cls in (written, STAND_INS.get(written)):
@@ -305,7 +308,7 @@ class ViewEntry:
 
 
 class ViewsConfig:
-    """``Views`` of a file.
+    """The ``Views`` of a file.
 
     Args:
         document: the file.
@@ -328,19 +331,23 @@ class ViewsConfig:
 
     @current.setter
     def current(self, view: View) -> None:
-        """Raises ValueError for a view that is not valid."""
+        """Set the current view.
+
+        Raises:
+            ValueError: the view is not valid.
+        """
         self._current.set(view)
 
     @property
     def saved(self) -> dict[str, View]:
-        """The saved views by ids that are stable while the file is open, in the order of the file."""
+        """The saved views in file order, by an ID that is stable while the file is open."""
         return {identity: entry.view for identity, (_, entry) in self._saved.items()}
 
     def save(self, view: View) -> str:
-        """Add a view to the saved ones, and return its id.
+        """Add a view to the saved views and return its ID.
 
         Raises:
-            ValueError: the view is not valid, or there are too many.
+            ValueError: the view is not valid, or there are too many saved views.
         """
         if len(self._saved) >= MAXIMUM_SAVED:
             raise ValueError(f"there are {MAXIMUM_SAVED} saved views already")
@@ -376,4 +383,4 @@ class ViewsConfig:
 
 
 def _unheard(diagnostic: Diagnostic) -> None:
-    """Ignore a finding: the values that were just written are valid."""
+    """Ignore a finding, because the values that were just written are valid."""

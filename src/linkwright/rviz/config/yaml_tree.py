@@ -1,7 +1,7 @@
 """YAML as a tree that is edited in place: untouched parts are written back as they were read.
 
 RViz's files contain much that this program does not know. The tree keeps PyYAML's nodes: key order, quoting and the
-spelling of every scalar survive, and every value knows its line.
+spelling of every scalar survive, and every value has its line number.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _SEQUENCE = "tag:yaml.org,2002:seq"
 
 @dataclass(frozen=True, slots=True)
 class Scalar:
-    """A scalar with its spelling and its place in the file."""
+    """A scalar with its spelling and its position in the file."""
 
     text: str
     span: Span
@@ -41,17 +41,17 @@ class Scalar:
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """The value of a key at an earlier time; None where the key was missing."""
+    """The earlier value of a key; None if the key was missing."""
 
     key: str
     value: yaml.Node | None
 
 
 class Section:
-    """A mapping of the file.
+    """A mapping in the file.
 
-    A path of keys identifies a scalar. RViz stores a value that has parts of its own under ``Value`` among
-    them; a path that ends at such a mapping means that value.
+    A path of keys identifies a scalar. If a value has children, RViz stores the value itself under ``Value`` in the
+    same mapping; a path that ends at such a mapping refers to that value.
     """
 
     def __init__(self, node: yaml.MappingNode, source: SourceText) -> None:
@@ -74,7 +74,7 @@ class Section:
         return None if node is None else Scalar(node.value, self.span(node))
 
     def text(self, *path: str) -> str | None:
-        """Return the text of the scalar at a path; faster than `scalar`, which includes its place."""
+        """Return the text of the scalar at a path; faster than `scalar`, which also returns the position."""
         node = self._scalar_node(path)
         return None if node is None else str(node.value)
 
@@ -84,7 +84,7 @@ class Section:
         return Section(node, self.source) if isinstance(node, yaml.MappingNode) else None
 
     def sections(self, *path: str) -> Iterator[Section]:
-        """Return the mappings in the sequence at a path; other items are skipped."""
+        """Yield the mappings in the sequence at a path, skipping other items."""
         node = self._find(path)
         if isinstance(node, yaml.SequenceNode):
             for item in node.value:
@@ -92,20 +92,20 @@ class Section:
                     yield Section(item, self.source)
 
     def put(self, path: tuple[str, ...], text: str, *, string: bool = False, nested: bool = False) -> None:
-        """Set the scalar at a path, and create the mappings on the way.
+        """Set the scalar at a path, creating missing mappings along the path.
 
         Args:
             path: keys, at least one.
             text: the spelling of the value.
-            string: whether it is a string whatever it looks like (then it is quoted if necessary).
-            nested: whether the value has parts of its own, and so is stored under ``Value``.
+            string: whether the value is a string regardless of its spelling (it is then quoted if necessary).
+            nested: whether the value has children of its own, and so is stored under ``Value``.
         """
         tag = _STRING if string else _Resolver().resolve(yaml.ScalarNode, text, (True, False))
         parent = self.node
         for key in path[:-1]:
             parent = _child_mapping(parent, key)
         there = _child(parent, path[-1])
-        # A plain value stays plain even if it has parts: RViz 1 writes topics this way.
+        # A scalar stays a scalar even if it has children: RViz 1 writes topics this way.
         plain = isinstance(there, yaml.ScalarNode) and there.tag != _NULL
         if isinstance(there, yaml.MappingNode) or (nested and not plain):
             parent, last = _child_mapping(parent, path[-1]), "Value"
@@ -114,19 +114,19 @@ class Section:
         _set(parent, last, yaml.ScalarNode(tag, text))
 
     def memory(self, key: str) -> Memory:
-        """Return the present value of a key, for `recall`."""
+        """Return the current value of a key, for `recall`."""
         there = _child(self.node, key)
         return Memory(key, None if there is None else _copy(there))
 
     def recall(self, memory: Memory) -> None:
-        """Restore the value of a key; a key that was added since is removed."""
+        """Restore the value of a key, or remove the key if it was added since."""
         if memory.value is not None:
             _set(self.node, memory.key, _copy(memory.value))
             return
         self.node.value[:] = [pair for pair in self.node.value if pair[0].value != memory.key]
 
     def span(self, node: yaml.Node | None = None) -> Span:
-        """Return the range of a node in its file; by default of the mapping itself."""
+        """Return the range of a node in its file; by default that of the mapping itself."""
         return _span(node or self.node, self.source)
 
     def _scalar_node(self, path: tuple[str, ...]) -> yaml.ScalarNode | None:
@@ -145,10 +145,10 @@ class Section:
 
 
 def parse(text: str, name: str) -> Section:
-    """Read a document whose root is a mapping.
+    """Return the root of a document, which must be a mapping.
 
     Raises:
-        LinkwrightError: RVIZ102, not YAML; RVIZ103, its root is not a mapping.
+        LinkwrightError: RVIZ102, it is not YAML; RVIZ103, its root is not a mapping.
     """
     source = SourceText(name, text)
     try:
@@ -171,22 +171,22 @@ def parse(text: str, name: str) -> Section:
 
 
 def write(section: Section) -> str:
-    """Return the document as text: keys in their order, scalars as they were read, in the layout of the source."""
+    """Return the document as text: the order of keys, the scalars and the layout are those of the source."""
     return _laid_out(section.node, section.source.text)
 
 
 def same(one: Section, other: Section) -> bool:
-    """Return whether two documents would be written alike."""
+    """Return whether two documents would be written as the same text."""
     return _plain(one.node) == _plain(other.node)
 
 
 def new_section(source: SourceText) -> Section:
-    """Return an empty mapping without a document."""
+    """Return an empty mapping that is not part of a document."""
     return Section(yaml.MappingNode(_MAPPING, [], flow_style=False), source)
 
 
 def copy_section(section: Section) -> Section:
-    """Return a copy without a document."""
+    """Return a copy of a mapping that is not part of a document."""
     node = _copy(section.node)
     assert isinstance(node, yaml.MappingNode)
     return Section(node, section.source)
@@ -199,7 +199,7 @@ def insert_section(parent: Section, key: str, section: Section, before: Section 
         parent: the mapping with the key.
         key: the key of the sequence.
         section: the mapping to insert.
-        before: the item to insert before; None or an unknown one for the end.
+        before: the item to insert before; None or an unknown item to append.
     """
     sequence = _child(parent.node, key)
     if not isinstance(sequence, yaml.SequenceNode):
@@ -234,7 +234,7 @@ class SequenceMemory:
 
 
 def remember_sequence(parent: Section, key: str) -> SequenceMemory:
-    """Return the present value of the key of a sequence, for `recall_sequence`."""
+    """Return the current value of the key of a sequence, for `recall_sequence`."""
     return SequenceMemory(_child(parent.node, key), entries(parent, key))
 
 
@@ -254,9 +254,9 @@ class NewSection:
 
     Attributes:
         holder: the mapping that contains it.
-        memory: the holder's value before.
-        section: the mapping itself.
-        keys: the keys that it had at first.
+        memory: the earlier value of the holder's key.
+        section: the new mapping itself.
+        keys: the keys that the mapping had when it was created.
     """
 
     holder: Section
@@ -279,7 +279,7 @@ def make_section(section: Section, *path: str) -> tuple[Section, list[NewSection
 
 
 def unmake(new_sections: list[NewSection]) -> list[NewSection]:
-    """Remove mappings without content beyond their initial keys; returns the other ones."""
+    """Remove mappings without content beyond their initial keys, and return the remaining ones."""
     left = list(new_sections)
     while left and left[-1].section.keys() == left[-1].keys:
         gone = left.pop()
@@ -296,7 +296,7 @@ def ensure_section(section: Section, *path: str) -> Section:
 
 
 def _copy(node: yaml.Node, *, deep: bool = True) -> yaml.Node:
-    """Return a deep copy of a node; `copy` cannot copy marks of libyaml."""
+    """Return a copy of a node, by default deep; the `copy` module cannot copy libyaml's marks."""
     if isinstance(node, yaml.ScalarNode):
         return yaml.ScalarNode(node.tag, node.value, node.start_mark, node.end_mark, node.style)
     assert isinstance(node, yaml.CollectionNode)
@@ -319,7 +319,7 @@ def _child(node: yaml.MappingNode, key: str) -> yaml.Node | None:
     found: yaml.Node | None = None
     for name, value in node.value:
         if isinstance(name, yaml.ScalarNode) and name.value == key:
-            found = value  # as in RViz, the last one wins
+            found = value  # the last one wins, as in RViz
     return found
 
 
@@ -344,7 +344,7 @@ def _set(node: yaml.MappingNode, key: str, value: yaml.Node) -> None:
             return
     names = [name.value for name, _ in node.value if isinstance(name, yaml.ScalarNode)]
     ordered = len(names) == len(node.value) and names == sorted(names)
-    at = bisect(names, key) if ordered else len(names)  # RViz writes most of its keys in alphabetic order
+    at = bisect(names, key) if ordered else len(names)  # RViz writes most of its keys in alphabetical order
     node.value.insert(at, (yaml.ScalarNode(_STRING, key), value))
 
 
@@ -414,14 +414,14 @@ _INDENTED_ITEMS = re.compile(r"^( *)[^\s#-][^\n]*:[ \r]*\n\1 +- ", re.MULTILINE)
 
 
 def _laid_out(node: yaml.Node, source: str) -> str:
-    """Return a document as text, in the layout of its source."""
+    """Return a document as text in the layout of its source."""
     if not _INDENTED_ITEMS.search(source):
         return _plain(node)
     return _serialized(node, _RvizDumper if _EMPTY_BELOW.search(source) else _IndentingDumper)
 
 
 def _plain(node: yaml.Node) -> str:
-    """Return a document as text, in libyaml's default layout, which is fast."""
+    """Return a document as text in libyaml's default layout, which is fast."""
     return _serialized(node, _PlainDumper)
 
 
@@ -431,14 +431,14 @@ def _serialized(node: yaml.Node, dumper: Any) -> str:
 
 
 class _IndentingDumper(yaml.SafeDumper):
-    """Indents the items of a sequence."""
+    """Writes YAML with indented sequence items."""
 
     def increase_indent(self, flow: bool = False, indentless: bool = False) -> None:
         super().increase_indent(flow, False)
 
 
 class _RvizDumper(_IndentingDumper):
-    """Uses RViz's layout: an empty mapping has a line of its own, too."""
+    """Uses RViz's layout, in which an empty mapping also has a line of its own."""
 
     def expect_block_mapping_simple_value(self) -> None:
         if not (isinstance(self.event, yaml.MappingStartEvent) and self.check_empty_mapping()):

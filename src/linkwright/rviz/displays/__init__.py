@@ -1,1 +1,1 @@
-"""The displays of the Displays panel, a file each."""
+"""The displays of the Displays panel, one module each."""

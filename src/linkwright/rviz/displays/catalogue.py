@@ -1,8 +1,8 @@
-"""The classes of displays by the names that .rviz files have for them.
+"""The classes of displays by the names that .rviz files use for them.
 
-Displays are found through the entry points ``linkwright.displays``, named as .rviz files name their class. A display is
-imported when the first one of its class is made: most configurations have a few of them, and the program must start
-quickly.
+Displays are found through the entry points ``linkwright.displays``, which are named as .rviz files name the class. A
+display class is imported when its first display is created: most configurations use only a few classes, and the program
+must start quickly.
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ from linkwright.rviz.displays.base.display import DisplayHost, ViewerDisplay
 
 
 class GroupDisplay(ViewerDisplay):
-    """Contains other displays, and switches them off together."""
+    """Contains other displays, and enables or disables all of them together."""
 
     CLASS = GROUP_CLASS
 
 
 class UnsupportedDisplay(ViewerDisplay):
-    """A display of an unknown class."""
+    """A display whose class is unknown; it is kept in the file but not drawn."""
 
     CLASS = ""
     SUPPORTED = False
 
     def start(self) -> None:
-        """Show in the status that it is not drawn."""
+        """Show in the status that the display is not drawn."""
         self.enabled_changed()
 
     def enabled_changed(self) -> None:
-        """Show in the status that it is not drawn, if the user enables it."""
+        """Show in the status that the display is not drawn, if the user enables it."""
         text = phrase("Displays of class '{name}' are kept in the file but not drawn", name=self.config.cls)
         self.set_status([StatusRow("Class", "warn", text)])
 
@@ -44,17 +44,17 @@ GROUP = "linkwright.displays"
 
 
 def has_display(cls: str) -> bool:
-    """Return whether displays of a class are drawn, or are groups."""
+    """Return whether a class of displays is supported: it is drawn or is a group."""
     return cls in extensions(GROUP)
 
 
 def display_classes() -> list[type[ViewerDisplay]]:
-    """Return the classes of displays that are drawn, and groups, without those that cannot be imported."""
+    """Return the classes of displays that are drawn, and the group class, without classes that cannot be imported."""
     return [found for cls in extensions(GROUP) if isinstance(found := _display_class(cls), type)]
 
 
 def make_display(host: DisplayHost, identity: str, config: DisplayConfig) -> ViewerDisplay:
-    """Return the display for an entry of the file; an `UnsupportedDisplay` for a class that is not drawn."""
+    """Return the display for an entry of the file; an `UnsupportedDisplay` if its class is not drawn."""
     if not has_display(config.cls):
         return UnsupportedDisplay(host, identity, config)
     found = _display_class(config.cls)
@@ -66,7 +66,7 @@ def make_display(host: DisplayHost, identity: str, config: DisplayConfig) -> Vie
 
 @cache
 def _display_class(cls: str) -> type[ViewerDisplay] | str:
-    """Return the class that draws a display of a name in .rviz files, or why it cannot be loaded."""
+    """Return the class for a display name in .rviz files, or the reason why it cannot be loaded."""
     try:
         found = extensions(GROUP)[cls].load()
     except Exception as error:  # noqa: BLE001  # of a package that is not ours anything may be wrong

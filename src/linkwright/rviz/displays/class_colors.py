@@ -1,4 +1,4 @@
-"""The colours of classes of detections: the same for a name wherever it is shown."""
+"""The colours of detection classes: a class name has the same colour wherever it is shown."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _PALETTE: tuple[Color, ...] = (
 
 
 def class_color(name: str, table: Mapping[str, Color]) -> Color:
-    """Return the colour of a class, from the table, vision_msgs_rviz_plugins, a colour in its name, or a palette."""
+    """Return a class's colour: from the table, vision_msgs_rviz_plugins, a colour in its name, or a palette."""
     if not name:
         return UNNAMED
     lower = name.lower()
@@ -51,10 +51,10 @@ def class_color(name: str, table: Mapping[str, Color]) -> Color:
 
 
 def read_class_colors(path: str) -> dict[str, Color]:
-    """Read a table from a YAML file, ``NAME: {r: 255, g: 165, b: 0}``, with names in lower case.
+    """Return the colour table in a YAML file, ``NAME: {r: 255, g: 165, b: 0}``, with names in lower case.
 
     Raises:
-        ValueError: it cannot be read, or is not such a table; the text gives the reason.
+        ValueError: the file cannot be read, or is not such a table; the text gives the reason.
     """
     try:
         document = yaml.safe_load(Path(path).expanduser().read_text(encoding="utf-8"))

@@ -1,4 +1,4 @@
-"""The properties that all displays of points share: RViz's PointCloudCommon and its transformers."""
+"""The properties shared by all displays of points: RViz's PointCloudCommon and its transformers."""
 
 from __future__ import annotations
 
@@ -117,13 +117,13 @@ COLOUR_PROPERTIES = frozenset(spec.name for spec in TRANSFORMER_SPECS) - {"Color
 
 
 def scalar_specs(channel: str, least: float, largest: float, *, inverted: bool | None = None) -> Schema:
-    """Return the properties of a display that shows one number as a point: RViz hides those without a choice.
+    """Return the properties of a display that shows one number as a point; RViz hides those without a choice.
 
     Args:
-        channel: the channel with the number.
-        least: default of ``Min Intensity``.
-        largest: default of ``Max Intensity``.
-        inverted: value of ``Invert Rainbow``, which is hidden then; None if the user may choose.
+        channel: the channel that contains the number.
+        least: the default of ``Min Intensity``.
+        largest: the default of ``Max Intensity``.
+        inverted: the value of ``Invert Rainbow``, which is then hidden; None to let the user choose.
     """
     changes: dict[str, dict[str, Any]] = {
         POSITION_TRANSFORMER: {"hidden": True},
@@ -139,7 +139,7 @@ def scalar_specs(channel: str, least: float, largest: float, *, inverted: bool |
 
 
 def colour_settings(properties: PropertyStore) -> ColourSettings:
-    """Return the values of the properties about colours."""
+    """Return the colour settings from the values of the properties."""
     flag, number, text = properties.flag, properties.number, properties.text
 
     def bounds(auto: str, *paths: Path) -> tuple[float, float] | None:

@@ -115,7 +115,7 @@ DEPTH_SCHEMA_UNFILTERED: Schema = tuple(replace(spec, words=()) for spec in DEPT
 _SYNC_NS = 500_000_000
 """The largest time between a colour image and its depths, nanoseconds."""
 
-# The camera has moved if its pose changes by more than these, metres and radians.
+# If the pose changes by more than these, in metres and radians, the camera has moved.
 _MOVED = 0.01
 _TURNED = np.radians(0.5)
 
@@ -145,12 +145,12 @@ class DepthCloudDisplay(CloudDisplay):
         self._camera_pose: Pose | None = None
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return the subscription to the depth map, by its transport."""
+        """Return the subscription to the depth image, which depends on its transport."""
         source = self._depth_source()
         return source.message_type, source.topic, self._qos()
 
     def most_waiting(self) -> int:
-        """Return the number of depth maps that may wait for their transforms."""
+        """Return the maximum number of depth images that may wait for their transforms."""
         return int(self.properties.number(QUEUE_SIZE))
 
     def pixel_size(self) -> float:
@@ -158,7 +158,7 @@ class DepthCloudDisplay(CloudDisplay):
         return self._pixel * self.properties.number(AUTO_SIZE, SIZE_FACTOR) if self.properties.flag(AUTO_SIZE) else 0.0
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show a depth map as soon as its colours have arrived."""
+        """Show a depth image as soon as its colour image has arrived."""
         assert pose is not None
         colour = self._colour_of(message) if self._wants_colour() else None
         if self._info is None or (colour is None and self._wants_colour()):
@@ -168,11 +168,11 @@ class DepthCloudDisplay(CloudDisplay):
         self._show_depths(message, pose, colour)
 
     def schema(self) -> Schema:
-        """Return the properties; with ``Topic Filter`` topics are offered by their names."""
+        """Return the properties; with ``Topic Filter``, only topics with suitable names are offered."""
         return DEPTH_SCHEMA if self._filters else DEPTH_SCHEMA_UNFILTERED
 
     def changed(self, path: Path) -> None:
-        """Subscribe to other topics, or show the last depths differently."""
+        """Subscribe to other topics, or redraw the last depth image."""
         if path[0] in SOURCES:
             self._restart()
             return
@@ -191,7 +191,7 @@ class DepthCloudDisplay(CloudDisplay):
         super().time_changed()
 
     def reset(self) -> None:
-        """Forget all covered points."""
+        """Discard all covered points."""
         self._builder.reset()
         self._camera_pose = None
         self._pending = None
@@ -274,7 +274,7 @@ class DepthCloudDisplay(CloudDisplay):
         return bool(self.properties.text(COLOUR_TOPIC).strip())
 
     def _colour_of(self, depth: Any) -> Any:
-        """Return the colour image nearest in time, or None if there is none near."""
+        """Return the colour image nearest in time, or None if none is close enough."""
         at = self.frame_of(depth)[1]
         nearest = min(self._recent, key=lambda image: abs(self.frame_of(image)[1] - at), default=None)
         if nearest is None or abs(self.frame_of(nearest)[1] - at) > _SYNC_NS:

@@ -1,4 +1,4 @@
-"""Detections: an image, with boxes of vision_msgs/Detection2DArray over it."""
+"""Detections: an image overlaid with the boxes of a vision_msgs/Detection2DArray."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ _PATIENCE = 1.0
 
 
 class DetectionImageDisplay(ImageDisplay):
-    """Images with boxes around the detected objects, in a panel of their own.
+    """Images with boxes around the detected objects, in their own panel.
 
-    While detections arrive, an image is shown together with those of its stamp, as late as the detector is. Detections
-    of an image that is no longer stored are drawn over the current image.
+    While detections arrive, an image is shown when the detections with its stamp have arrived, so it is delayed by the
+    detector. Detections for an image that is no longer stored are drawn over the current image.
     """
 
     CLASS = "linkwright/Detections"
@@ -63,11 +63,11 @@ class DetectionImageDisplay(ImageDisplay):
         self._detected_at = float("-inf")
 
     def schema(self) -> Schema:
-        """Return the properties of an image, and those of boxes."""
+        """Return the properties of an image display, and those for the boxes."""
         return (*super().schema(), *self.SCHEMA[len(ImageDisplay.SCHEMA) :])
 
     def changed(self, path: Path) -> None:
-        """Subscribe to other detections, or apply another threshold."""
+        """Subscribe to other detections, or apply a new threshold."""
         super().changed(path)
         if path[0] == DETECTIONS:
             self._threshold.close()
@@ -92,7 +92,7 @@ class DetectionImageDisplay(ImageDisplay):
         super().time_changed()
 
     def reset(self) -> None:
-        """Forget image and boxes."""
+        """Discard the image and the boxes."""
         self._images.clear()
         self._detected_at = float("-inf")
         super().reset()
@@ -133,7 +133,7 @@ class DetectionImageDisplay(ImageDisplay):
 
 
 def _boxes(message: Any, *, of_image: bool) -> ImageBoxes | None:
-    """Return the boxes, or None if a number is not finite."""
+    """Return the boxes of a message, or None if a number is not finite."""
     detections = list(message.detections)
     results = [best_result(detection) for detection in detections]
     middles = [detection.bbox.center for detection in detections]

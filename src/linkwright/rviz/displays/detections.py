@@ -46,7 +46,7 @@ _CLASSES: Schema = (
 
 
 class _BoxDisplay(RecentDisplay):
-    """The boxes of the last message."""
+    """Shows the boxes of the last message."""
 
     def _content(
         self, boxes: Sequence[Any], colors: Sequence[Color], scores: Sequence[float], names: Sequence[str]
@@ -60,14 +60,14 @@ class _BoxDisplay(RecentDisplay):
 
 
 def _numbers(pose: Any) -> tuple[float, ...]:
-    """Return x y z qx qy qz qw; a quaternion of zeros, the default of messages, means no rotation."""
+    """Return a pose as x y z qx qy qz qw; a zero quaternion, the default in messages, means no rotation."""
     position, turn = pose.position, pose.orientation
     w = turn.w if any((turn.x, turn.y, turn.z, turn.w)) else 1.0
     return (position.x, position.y, position.z, turn.x, turn.y, turn.z, w)
 
 
 class BoundingBox3DArrayDisplay(_BoxDisplay):
-    """Boxes of one colour."""
+    """Shows boxes in one colour."""
 
     CLASS = "vision_msgs_rviz_plugins/BoundingBox3DArray"
     MESSAGE = "vision_msgs/msg/BoundingBox3DArray"
@@ -79,7 +79,7 @@ class BoundingBox3DArrayDisplay(_BoxDisplay):
         return self._content(boxes, [(255, 255, 255)] * len(boxes), [-1.0] * len(boxes), [""] * len(boxes))
 
     def boxes_of(self, message: Any) -> Sequence[Any]:
-        """Return the BoundingBox3D of a message."""
+        """Return the BoundingBox3D messages in a message."""
         return list(message.boxes)
 
 
@@ -91,16 +91,19 @@ class BoundingBox3DDisplay(BoundingBox3DArrayDisplay):
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, _COLOUR)
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """Return the Fixed Frame, at the latest time."""
+        """Return the Fixed Frame and the latest time."""
         return self.host.frames.fixed_frame, 0
 
     def boxes_of(self, message: Any) -> Sequence[Any]:
-        """Return the one box."""
+        """Return the single box of the message."""
         return [message]
 
 
 def best_result(detection: Any) -> tuple[str, float]:
-    """Return class and score of the likeliest hypothesis of a Detection2D or Detection3D, or no class and -1."""
+    """Return the class and score of the most likely hypothesis of a Detection2D or Detection3D.
+
+    Without hypotheses, return an empty class and -1.
+    """
     best = max(
         (result.hypothesis for result in detection.results), key=lambda hypothesis: hypothesis.score, default=None
     )
@@ -108,7 +111,7 @@ def best_result(detection: Any) -> tuple[str, float]:
 
 
 class Detection3DArrayDisplay(_BoxDisplay):
-    """Detections as boxes with the colours of their classes."""
+    """Shows detections as boxes in the colours of their classes."""
 
     CLASS = "vision_msgs_rviz_plugins/Detection3DArray"
     MESSAGE = "vision_msgs/msg/Detection3DArray"
@@ -120,7 +123,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
         self._end: asyncio.TimerHandle | None = None
 
     def start(self) -> None:
-        """Read the colours, and subscribe."""
+        """Read the class colours, and subscribe."""
         self._read_colors()
         super().start()
 
@@ -130,7 +133,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
         super().stop()
 
     def changed(self, path: Path) -> None:
-        """Apply other colours or another lifetime."""
+        """Apply new colours or a new lifetime."""
         super().changed(path)
         if path == (CONFIG_PATH,):
             self._read_colors()
@@ -138,7 +141,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
             self.show_again()
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show the boxes for the time that the property sets."""
+        """Show the boxes for the duration that the property sets."""
         super().process_message(message, pose)
         self._cancel_end()
         seconds = int(self.properties.number(LIFETIME))
@@ -146,7 +149,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
             self._end = asyncio.get_running_loop().call_later(seconds, self.reset)
 
     def reset(self) -> None:
-        """Forget the boxes."""
+        """Discard the boxes."""
         self._cancel_end()
         super().reset()
 
@@ -159,7 +162,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
         return self._content(boxes, colors, [score for _, score in results], [name for name, _ in results])
 
     def detections_of(self, message: Any) -> Sequence[Any]:
-        """Return the Detection3D of a message."""
+        """Return the Detection3D messages in a message."""
         return list(message.detections)
 
     def _read_colors(self) -> None:
@@ -179,12 +182,12 @@ class Detection3DArrayDisplay(_BoxDisplay):
 
 
 class Detection3DDisplay(Detection3DArrayDisplay):
-    """A single detection."""
+    """Shows a single detection."""
 
     CLASS = "vision_msgs_rviz_plugins/Detection3D"
     MESSAGE = "vision_msgs/msg/Detection3D"
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, *_CLASSES)
 
     def detections_of(self, message: Any) -> Sequence[Any]:
-        """Return the one detection."""
+        """Return the single detection of the message."""
         return [message]

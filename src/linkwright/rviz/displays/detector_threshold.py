@@ -1,4 +1,4 @@
-"""The parameter with which the node that publishes detections drops the uncertain ones."""
+"""The parameter with which a detection node filters out detections below a minimum score."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ StatusReport = Callable[[StatusLevel, str], None]
 
 
 class DetectorThreshold:
-    """Sets the least score of detections at the node that publishes them; only the latest request counts.
+    """Sets the minimum detection score at the publishing node; only the latest request counts.
 
     Args:
         node: the node that sends requests.
@@ -33,7 +33,7 @@ class DetectorThreshold:
         self._task: asyncio.Task[None] | None = None
 
     def set(self, topic: str, value: float) -> None:
-        """Set the least score at the publisher of a topic, if it has a parameter for it."""
+        """Set the minimum score at the publisher of a topic, if it has a parameter for it."""
         self._wish = topic, value
         if self._task is None or self._task.done():
             self._task = asyncio.get_running_loop().create_task(self._fulfil())
@@ -73,7 +73,7 @@ class DetectorThreshold:
         except NoAnswerError as error:
             return "warn", f"Filtered here: {error}"
         finally:
-            with suppress(ValueError):  # the node may have been destroyed before
+            with suppress(ValueError):  # the node may already have been destroyed
                 client.destroy()
         if not result.successful:
             return "warn", f"Filtered here: {name} refuses '{known}': {result.reason}"

@@ -29,9 +29,9 @@ _TURNING = ("revolute", "continuous")
 
 
 class EffortDisplay(RecentDisplay):
-    """The torques of revolute and continuous joints, as rings about their axes, larger the nearer to the limit.
+    """The torques of revolute and continuous joints as rings about their axes, larger the closer they are to the limit.
 
-    RViz draws those of revolute joints only, and turned away from axes other than z.
+    RViz draws the torques of revolute joints only, and orients the rings incorrectly for axes other than z.
     """
 
     CLASS = "rviz_default_plugins/Effort"
@@ -76,7 +76,7 @@ class EffortDisplay(RecentDisplay):
         )
 
     def start(self) -> None:
-        """Subscribe to the robot's description too."""
+        """Subscribe to the topic and to the robot's description."""
         super().start()
         self._follow()
 
@@ -86,7 +86,7 @@ class EffortDisplay(RecentDisplay):
         super().stop()
 
     def changed(self, path: Path) -> None:
-        """Follow another description; drop the rings of another prefix."""
+        """Follow another description, or remove the rings of the former prefix."""
         super().changed(path)
         if path == (_DESCRIPTION,):
             self._follow()
@@ -100,14 +100,14 @@ class EffortDisplay(RecentDisplay):
         self._follow()
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """Return the frame of the first joint that is drawn: joint states have no frame."""
+        """Return the frame of the first joint that is drawn, because joint states have no frame."""
         stamp = message.header.stamp
         joint = next((self._joints[name] for name in message.name if self._joints and name in self._joints), None)
         frame = self.host.frames.fixed_frame if joint is None else self._frame(joint)
         return frame, stamp.nanoseconds
 
     def content(self, message: Any) -> DataContent | None:
-        """Return a ring for each joint whose frame can be placed."""
+        """Return a ring for each joint whose frame has a known pose."""
         if self._joints is None:
             self.refuse(phrase("Robot model might not be loaded yet"))
             return None
@@ -171,7 +171,7 @@ class EffortDisplay(RecentDisplay):
 
     def _leave(self) -> None:
         if self._descriptions is not None:
-            with suppress(ValueError):  # the node may have been destroyed before
+            with suppress(ValueError):  # the node may already have been destroyed
                 self.context.node.destroy_subscription(self._descriptions)
             self._descriptions = None
 

@@ -1,4 +1,4 @@
-"""Axes, Grid and TF, which show frames."""
+"""Displays that show frames: Axes, Grid and TF."""
 
 from __future__ import annotations
 
@@ -33,16 +33,16 @@ class AxesDisplay(ViewerDisplay):
     )
 
     def start(self) -> None:
-        """Show in the status whether the frame can be placed."""
+        """Show in the status whether the frame's pose is known."""
         self.frames_changed()
 
     def changed(self, path: Path) -> None:
-        """Update the status for another frame."""
+        """Update the status for the newly selected frame."""
         if path == (_REFERENCE,):
             self.frames_changed()
 
     def frames_changed(self) -> None:
-        """Show in the status whether the frame can be placed."""
+        """Show in the status whether the frame's pose is known."""
         self.set_status([transform_status(self.host.frames, self.properties.text(_REFERENCE))])
 
 
@@ -70,34 +70,34 @@ class GridDisplay(ViewerDisplay):
     )
 
     def start(self) -> None:
-        """Show in the status whether the reference frame can be placed."""
+        """Show in the status whether the reference frame's pose is known."""
         self.frames_changed()
 
     def changed(self, path: Path) -> None:
-        """Update the status for another reference frame."""
+        """Update the status for the newly selected reference frame."""
         if path == (_REFERENCE,):
             self.frames_changed()
 
     def frames_changed(self) -> None:
-        """Show in the status whether the reference frame can be placed."""
+        """Show in the status whether the reference frame's pose is known."""
         self.set_status([transform_status(self.host.frames, self.properties.text(_REFERENCE))])
 
 
 class FrameFilter:
-    """A regular expression that selects names of frames.
+    """A regular expression that selects frame names.
 
     Args:
-        text: the expression, empty for none.
+        text: the expression; empty for no filter.
 
     Attributes:
-        text: the same.
-        problem: why the expression is not valid, for the status; None if it is.
+        text: the expression.
+        problem: the reason why the expression is not valid, for the status; None if it is valid.
     """
 
     def __init__(self, text: str = "") -> None:
         self.text = text
         self.problem: Phrase | None = None
-        self._expression: Expression | None = None  # here, because few users write an expression
+        self._expression: Expression | None = None  # imported here because few users write an expression
         self._known: set[str] = set()
         self._found: set[str] = set()
         if text:
@@ -114,7 +114,7 @@ class FrameFilter:
         return self._expression is not None
 
     def found_in(self, names: Collection[str]) -> set[str]:
-        """Return the names that match the expression, or none if the match takes too long."""
+        """Return the names that match the expression; an empty set if matching takes too long."""
         if self._expression is not None:
             from linkwright.graph.names.expressions import TooCostlyError
 
@@ -154,7 +154,7 @@ _DEEPEST = 60
 class TfDisplay(ViewerDisplay):
     """Axes, names and arrows of the frames that tf knows.
 
-    RViz's read-only rows of a frame (parent, position, orientation) are the page's own, see `Property`.
+    The page itself implements RViz's read-only rows of a frame (parent, position, orientation), see `Property`.
     """
 
     CLASS = "rviz_default_plugins/TF"
@@ -174,11 +174,11 @@ class TfDisplay(ViewerDisplay):
         return self._schema
 
     def start(self) -> None:
-        """List the present frames."""
+        """List the current frames."""
         self.frames_changed()
 
     def changed(self, path: Path) -> None:
-        """Follow a filter, or the check box over all frames."""
+        """Apply a new filter, or the check box that enables or disables all frames."""
         if path in _FILTERS:
             self.frames_changed()
         elif path == (FRAME_TIMEOUT,):
@@ -193,7 +193,7 @@ class TfDisplay(ViewerDisplay):
             self.pages.publish(PropertyChanged(self.property_id(_ALL), False))
 
     def enabled_changed(self) -> None:
-        """Show frames and their status, or none; frames that no display shows need not fade."""
+        """Show or hide the frames and their status; frames that no display shows need not fade."""
         self.host.fading_changed()
         super().enabled_changed()
 

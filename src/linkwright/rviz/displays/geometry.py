@@ -1,4 +1,4 @@
-"""GridCells, PointStamped, Polygon and Range, which draw messages with geometry."""
+"""Displays that draw geometric messages: GridCells, PointStamped, Polygon and Range."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from linkwright.rviz.displays.base.topic_display import TOPIC, RecentDisplay, To
 
 
 class GridCellsDisplay(TopicDisplay):
-    """Flat cells of one size."""
+    """Flat cells of equal size."""
 
     CLASS = "rviz_default_plugins/GridCells"
     MESSAGE = "nav_msgs/msg/GridCells"
@@ -48,7 +48,7 @@ class GridCellsDisplay(TopicDisplay):
             self.send(content, pose=pose, stamp_ns=self.frame_of(message)[1])
 
     def _refuse(self, level: StatusLevel, text: Phrase) -> None:
-        """Remove the earlier cells, too, and show the reason in the row of the topic, as RViz does."""
+        """Remove the earlier cells, and show the reason in the row of the topic, as RViz does."""
         self.forget()
         self.set_status_row(TOPIC, level, text)
 
@@ -92,7 +92,7 @@ class PolygonDisplay(RecentDisplay):
 
 
 class RangeDisplay(RecentDisplay):
-    """The last measurements of a range sensor, each as a cone of its field of view."""
+    """The last measurements of a range sensor, each drawn as a cone with the sensor's field of view."""
 
     CLASS = "rviz_default_plugins/Range"
     MESSAGE = "sensor_msgs/msg/Range"
@@ -105,13 +105,13 @@ class RangeDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """Return a cone, of length zero if the measurement is not valid."""
+        """Return the cone of a measurement; its length is zero if the measurement is not valid."""
         angle = float(message.field_of_view)
         return RangeCone(_cone_length(message), angle if math.isfinite(angle) else 0.0)
 
 
 def _cone_length(message: Any) -> float:
-    """Return the length of the cone by RViz's rule, which is that of REP 117 for sensors with a fixed distance."""
+    """Return the length of the cone by RViz's rule, which follows REP 117 for fixed-distance sensors."""
     measured, least, most = float(message.range), float(message.min_range), float(message.max_range)
     if least <= measured <= most and math.isfinite(measured):
         return measured

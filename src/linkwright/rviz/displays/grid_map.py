@@ -27,18 +27,18 @@ _SIZE = "Size"
 
 
 class BadGridError(ValueError):
-    """A grid map cannot be drawn; the text gives the reason."""
+    """Raised when a grid map cannot be drawn; the text gives the reason."""
 
 
 class GridMapDisplay(RecentDisplay):
-    """The last grid maps of a topic, as surfaces: one layer gives the heights, one the colours."""
+    """The last grid maps of a topic as surfaces: one layer sets the heights, another the colours."""
 
     CLASS = "grid_map_rviz_plugin/GridMap"
     MESSAGE = "grid_map_msgs/msg/GridMap"
     LENGTH = ("History Length",)
 
     def schema(self) -> Schema:
-        """Return the properties; newer versions of the plugin write *ColorMap* instead of *Rainbow*."""
+        """Return the properties, whose names depend on the version: newer ones have *ColorMap* for *Rainbow*."""
         word = "ColorMap" if self.config.section.scalar("Use ColorMap") else "Rainbow"
         return (
             topic_spec(description=self.MESSAGE, filter_size=10),
@@ -98,7 +98,7 @@ class GridMapDisplay(RecentDisplay):
         return made
 
     def changed(self, path: Path) -> None:
-        """Draw the last map again if the page does not apply the property itself."""
+        """Redraw the last map if the page does not apply the property itself."""
         super().changed(path)
         if path[0] not in ("Topic", "Alpha", "Show Grid Lines", "History Length"):
             self.reset()
@@ -134,7 +134,7 @@ class GridMapDisplay(RecentDisplay):
         )
 
     def _colors(self, grid: _Grid) -> NDArray[np.uint8]:
-        """Return red, green and blue of each cell, shape (rows, columns, 3) or (3,)."""
+        """Return the RGB colour of each cell, shape (rows, columns, 3), or one colour, shape (3,)."""
         properties = self.properties
         transformer = properties.text("Color Transformer")
         if transformer in ("FlatColor", "None"):
@@ -174,7 +174,7 @@ class _Grid:
     """The cells of a grid_map_msgs/msg/GridMap: row 0 has the largest x, column 0 the largest y.
 
     Raises:
-        BadGridError: a size that is not finite and positive, or lists of different lengths.
+        BadGridError: a size is not finite and positive, or lists have different lengths.
     """
 
     def __init__(self, message: Any) -> None:
@@ -203,7 +203,7 @@ class _Grid:
             )
 
     def layer(self, name: str) -> NDArray[np.float32]:
-        """Return the values of a layer, shape (rows, columns); not finite for cells without a value.
+        """Return the values of a layer, shape (rows, columns); cells without a value are not finite.
 
         Raises:
             BadGridError: there is no such layer, or it does not have one number for each cell.
@@ -231,7 +231,7 @@ class _Grid:
         return np.ascontiguousarray(np.roll(cells, begin, axis=(0, 1)))
 
     def points(self, heights: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
-        """Return the centres of the cells with these heights, m, in the frame of the map; shape (rows, columns, 3)."""
+        """Return the cell centres at the given heights, m, in the frame of the map; shape (rows, columns, 3)."""
         rows, columns = self.shape
         along = (rows / 2.0 - 0.5 - np.arange(rows)) * self._resolution
         across = (columns / 2.0 - 0.5 - np.arange(columns)) * self._resolution

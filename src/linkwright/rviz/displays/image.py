@@ -1,4 +1,4 @@
-"""Image and Camera: the images of a topic, raw or compressed."""
+"""Image and Camera: displays for the images of a topic, raw or compressed."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ MOST_PIXELS = 2_100_000
 
 
 class ImageTopicDisplay(TopicDisplay):
-    """Shows the images of a topic. As in RViz, the end of its name selects the transport.
+    """Shows the images of a topic. As in RViz, the suffix of the topic's name selects the transport.
 
-    Those of ``/compressed`` are files that browsers read, and go to the page as they are, unless their values have more
-    than 8 bits.
+    Images on ``/compressed`` topics are files that browsers can read. They are sent to the page unchanged, unless their
+    values have more than 8 bits.
     """
 
     MESSAGE = "sensor_msgs/msg/Image"
@@ -59,12 +59,12 @@ class ImageTopicDisplay(TopicDisplay):
         return (cls.MESSAGE, "sensor_msgs/msg/CompressedImage")
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return type, topic and quality of service, by the transport of the topic."""
+        """Return the type, the topic and the QoS of the subscription, which depend on the topic's transport."""
         source = self._named_source()
         return source.message_type, source.topic, super().subscription()[2]
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show an image, or the reason why it cannot be unpacked."""
+        """Show an image, or the reason why it cannot be decoded."""
         try:
             image = self._image_of(message)
         except BadImageError as error:
@@ -77,12 +77,13 @@ class ImageTopicDisplay(TopicDisplay):
         """Show an image.
 
         Args:
-            message: with the fields of a sensor_msgs/msg/Image, or a sensor_msgs/msg/CompressedImage for browsers.
+            message: a message with the fields of a sensor_msgs/msg/Image, or a sensor_msgs/msg/CompressedImage for
+                browsers.
             pose: see `process_message`.
         """
 
     def reset(self) -> None:
-        """Forget the image."""
+        """Discard the image."""
         self.ranges.reset()
         super().reset()
 
@@ -102,17 +103,17 @@ class ImageTopicDisplay(TopicDisplay):
         self.send(content, frame=frame.removeprefix("/"), pose=pose, stamp_ns=stamp_ns, shrink=shrink)
 
     def reduction(self, width: int, height: int) -> int:
-        """Return the number of pixels along a side whose mean is sent as one pixel."""
+        """Return the side length, in pixels, of the blocks that are averaged to one pixel before sending."""
         return 1
 
     def _named_source(self) -> ImageSource:
-        """Return the topic and transport that the property names, and the type that the graph knows by now."""
+        """Return the topic and transport that the property names, with the message type if the graph knows it."""
         source = ImageSource.of(self.properties.text(TOPIC))
         if not source.topic:
             return source
         try:
             return source.carrying({carried for _, carried in self.context.published.publishers(source.topic)})
-        except InvalidTopicNameError:  # subscribing reports the invalid name
+        except InvalidTopicNameError:  # the subscription reports the invalid name
             return source
 
     def _report_count(self) -> None:
@@ -165,7 +166,7 @@ class ImageTopicDisplay(TopicDisplay):
 
 
 def _is_readable(start: bytes) -> bool:
-    """Return whether a file starts as JPEG, PNG, GIF, BMP or WebP do."""
+    """Return whether the data starts like a JPEG, PNG, GIF, BMP or WebP file."""
     return start.startswith((b"\xff\xd8\xff", b"\x89PNG", b"GIF8", b"BM")) or start[8:12] == b"WEBP"
 
 
@@ -191,9 +192,9 @@ _TOPIC_SPEC = topic_spec(
 
 
 class ImageDisplay(ImageTopicDisplay):
-    """Images in a panel of their own.
+    """Images in their own panel.
 
-    As in RViz the properties of the range appear once an image has values of more than 8 bits.
+    As in RViz, the properties of the value range appear once an image has values of more than 8 bits.
     """
 
     CLASS = "rviz_default_plugins/Image"
@@ -210,9 +211,9 @@ class ImageDisplay(ImageTopicDisplay):
         return self._panel is not None and (self._panel.width <= 0 or self._panel.height <= 0)
 
     def receive(self, message: Any) -> None:
-        """Send no more pixels than panels show; while none is visible, unsubscribe after the next image.
+        """Limit the pixels sent to what panels show; while no panel is visible, unsubscribe after the next image.
 
-        Cameras that publish only for subscribers then publish no images for a hidden panel.
+        Cameras that publish only while they have subscribers then publish no images for a hidden panel.
         """
         before, self._panel = self._panel, message
         if self._is_hidden:
@@ -221,21 +222,21 @@ class ImageDisplay(ImageTopicDisplay):
             return
         if self.enabled and self._subscription is None:
             self._subscribe()
-            if self.last is not None:  # the earlier image is still shown
+            if self.last is not None:  # the previous image is still shown
                 self._count = 1
                 self._report_count()
         if before is not None and (message.width > before.width or message.height > before.height):
             self.show_again()
 
     def reduction(self, width: int, height: int) -> int:
-        """Return the largest number at which panels still show every pixel that is sent."""
+        """Return the largest reduction at which panels do not lose detail."""
         panel = self._panel
         if panel is None or panel.width <= 0 or panel.height <= 0:
             return 1
         return max(1, int(max(width / panel.width, height / panel.height)))
 
     def schema(self) -> Schema:
-        """Return the properties; those of the range only for images that have one."""
+        """Return the properties; those of the value range only for images that have a range."""
         if self._ranged:
             return self.SCHEMA
         return (_TOPIC_SPEC, *(replace(spec, hidden=True) for spec in _RANGE_SPECS))
@@ -256,7 +257,7 @@ class ImageDisplay(ImageTopicDisplay):
         self.show_image(message)
 
     def changed(self, path: Path) -> None:
-        """Show the image with another range."""
+        """Show the image with a new value range."""
         super().changed(path)
         if any(spec.name == path[0] for spec in _RANGE_SPECS):
             self.show_again()
@@ -295,7 +296,7 @@ _SPECS: Schema = (
 
 
 class CameraDisplay(ImageTopicDisplay):
-    """The scene as a camera sees it, with the camera's image behind or over it, in a panel of its own."""
+    """The scene as seen by a camera, with the camera's image behind or over it, in its own panel."""
 
     CLASS = "rviz_default_plugins/Camera"
     SCHEMA = _SPECS
@@ -319,14 +320,14 @@ class CameraDisplay(ImageTopicDisplay):
         return (*_SPECS, check_box)
 
     def arranged(self, displays: Sequence[ViewerDisplay]) -> None:
-        """Offer a check box for each of the other displays."""
+        """Update the check boxes, one for each of the other displays."""
         boxes = self._boxes_of(displays, None)
         if boxes != self._boxes:
             self._boxes = boxes
             self.publish_properties()
 
     def _boxes_of(self, displays: Sequence[ViewerDisplay], group: DisplayConfig | None) -> Schema:
-        """Return a check box for each display of a group, by its name, with those of subgroups below."""
+        """Return a check box for each display of a group, by name, with those of its subgroups below it."""
         found: dict[str, PropertySpec] = {}
         for display in displays:
             config = display.config
@@ -352,7 +353,7 @@ class CameraDisplay(ImageTopicDisplay):
         super().time_changed()
 
     def reset(self) -> None:
-        """Forget image and camera."""
+        """Discard the image and the camera parameters."""
         if self.last is None:
             self._info = None
         super().reset()
@@ -378,7 +379,7 @@ class CameraDisplay(ImageTopicDisplay):
             self.show_again()
 
     def _model(self, image: Any) -> CameraModel | None:
-        """Return the camera of an image; without one, show the reason in the status and return None."""
+        """Return the camera model of an image; if there is none, show the reason in the status and return None."""
         info = self._info
         if info is None:
             return None

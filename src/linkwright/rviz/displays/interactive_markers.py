@@ -53,10 +53,10 @@ class InteractiveMarkersDisplay(DataDisplay):
 
     @classmethod
     def topic_value(cls, topic: str) -> str:
-        """Return the namespace of the server whose updates a topic carries."""
+        """Return the namespace of the interactive marker server that publishes updates on a topic."""
         return topic.rpartition("/")[0]
 
-    # --- life --------------------------------------------------------------------------------------------------
+    # --- lifecycle ---------------------------------------------------------------------------------------------
 
     def start(self) -> None:
         """Connect, if the display is enabled."""
@@ -64,12 +64,12 @@ class InteractiveMarkersDisplay(DataDisplay):
             self._connect()
 
     def stop(self) -> None:
-        """Disconnect, and withdraw the files that its markers named from pages."""
+        """Disconnect, and withdraw from pages the files that its markers referred to."""
         self._disconnect()
         self.context.meshes.replace(self.id, {})
 
     def changed(self, path: Path) -> None:
-        """Connect to another server, or rebuild its markers."""
+        """Connect to another server, or recreate its markers."""
         if path in ((_NAMESPACE,), (_TRANSPARENCY,)):
             self.reset()
 
@@ -78,13 +78,13 @@ class InteractiveMarkersDisplay(DataDisplay):
         self.reset()
 
     def reset(self) -> None:
-        """Start over."""
+        """Discard all markers and connect again."""
         self._disconnect()
         if self.enabled:
             self._connect()
 
     def frames_changed(self) -> None:
-        """Place the markers in the other Fixed Frame."""
+        """Place the markers in the new Fixed Frame."""
         for name in list(self._markers):
             self._show(name)
 
@@ -199,7 +199,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         if moved.header.frame_id:
             marker.header = moved.header
         if not same_frame or not _is_latest(marker):
-            self._show(moved.name)  # its frame has moved
+            self._show(moved.name)  # the marker's frame has moved
         elif moved.name not in self._unplaced:
             content = InteractiveMarkerMoved(moved.name, pose)
             self.send(content, key=f"pose {moved.name}", frame=marker.header.frame_id.removeprefix("/"))
@@ -238,7 +238,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         self.send(shape, key=f"marker {name}", frame=frame, pose=at)
 
     def _frame_pose(self, marker: Any, frame: str) -> Pose | None:
-        """Return the pose of the marker's frame at its time; None for a marker without a time."""
+        """Return the pose of the marker's frame at the marker's time; None for a marker without a time."""
         fixed_frame = self.host.frames.fixed_frame
         stamp = marker.header.stamp
         pose = self.context.transforms.pose(fixed_frame, frame, stamp.nanoseconds)

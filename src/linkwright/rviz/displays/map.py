@@ -69,9 +69,9 @@ _SCHEMA: Schema = (
 
 
 class MapDisplay(TopicDisplay):
-    """An occupancy grid, with updates of parts of it.
+    """An occupancy grid with partial updates.
 
-    It follows its frame, or with the timestamp stays at its frame's pose at the map's time.
+    The map follows its frame. If the timestamp is used, it stays at its frame's pose at the map's time.
     """
 
     CLASS = "rviz_default_plugins/Map"
@@ -90,19 +90,19 @@ class MapDisplay(TopicDisplay):
         self._follow_topic(file_too=False)
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """Return the map's frame, by default ``map``, and its time, the latest one unless the timestamp is used."""
+        """Return the map's frame, by default ``map``, and its time: the latest unless the timestamp is used."""
         frame, stamp_ns = super().frame_of(message)
         return frame or "map", stamp_ns if self.properties.flag(_USE_TIMESTAMP) else 0
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show a map; one that was updated meanwhile stays."""
+        """Show a map; a map that is shown again keeps the updates applied to it."""
         self._pose = pose
         if message is not self._map and not self._load(message):
             return
         self._send()
 
     def changed(self, path: Path) -> None:
-        """Follow another topic, other updates, or the timestamp."""
+        """Subscribe to another topic or to other updates, or apply the timestamp setting."""
         if path == (TOPIC,):
             self._follow_topic(file_too=True)
             self.pages.publish(PropertyChanged(self.property_id((_UPDATE_TOPIC,)), self.properties.text(_UPDATE_TOPIC)))
@@ -113,12 +113,12 @@ class MapDisplay(TopicDisplay):
             self.show_again()
 
     def recalled(self) -> None:
-        """Take updates from the topic beside the map's if the file does not name another."""
+        """Subscribe to the updates next to the map's topic if the file does not name another topic."""
         super().recalled()
         self._follow_topic(file_too=False)
 
     def frames_changed(self) -> None:
-        """Show in the status whether the map can be placed now."""
+        """Show in the status whether the map's pose is known now."""
         super().frames_changed()
         if self._map is None or self.properties.flag(_USE_TIMESTAMP):
             return
@@ -132,7 +132,7 @@ class MapDisplay(TopicDisplay):
         self._updates.resume()
 
     def reset(self) -> None:
-        """Draw nothing; forget the map of a former topic."""
+        """Clear the map, and discard the map of a former topic."""
         if self._sending is not None:
             self._sending.cancel()
             self._sending = None
@@ -148,7 +148,7 @@ class MapDisplay(TopicDisplay):
             self._sending = None
 
     def _follow_topic(self, *, file_too: bool) -> None:
-        """Take updates from the topic beside the map's, as RViz does; a file without an update topic gets none."""
+        """Subscribe to the update topic next to the map's, as RViz does; a file without one gets none."""
         topic = self.properties.text(TOPIC).strip()
         updates = f"{topic}_updates" if topic else ""
         if self.config.section.text(_UPDATE_TOPIC) is None:
@@ -219,7 +219,7 @@ class MapDisplay(TopicDisplay):
         self._send_soon()
 
     def _send_soon(self) -> None:
-        """Send the map after a short wait, so that many updates give one map."""
+        """Send the map after a short delay, which combines many updates into one map."""
         if self._sending is None:
             wait = max(0.0, self._sent_at + _UPDATE_PERIOD - time.monotonic())
             self._sending = asyncio.get_running_loop().call_later(wait, self._send_updated)
@@ -244,7 +244,7 @@ class MapDisplay(TopicDisplay):
 
 
 def _size_mismatch(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
-    """Return the text for a size, in a MapMetaData or an update, that does not match the number of cells."""
+    """Return the status text for a MapMetaData or update whose size does not match its number of cells."""
     return phrase(
         "Data size doesn't match width*height: width = {width}, height = {height}, data size = {size}",
         width=grid.width,
@@ -261,7 +261,7 @@ def _pose_of(origin: Any) -> list[float]:
 
 
 def _readings(info: Any) -> Iterator[tuple[Path, float | int]]:
-    """Return the values of the read-only properties, from a nav_msgs/msg/MapMetaData."""
+    """Yield the values of the read-only properties, from a nav_msgs/msg/MapMetaData."""
     yield ("Resolution",), float(info.resolution)
     yield ("Width",), info.width
     yield ("Height",), info.height

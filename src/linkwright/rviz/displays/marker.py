@@ -1,4 +1,4 @@
-"""rviz_default_plugins/Marker and rviz_default_plugins/MarkerArray, and displays that consist of markers."""
+"""rviz_default_plugins/Marker and rviz_default_plugins/MarkerArray, and displays composed of markers."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _DUPLICATES = "Duplicate Marker Check"
 
 
 class _Marker:
-    """A marker as it was received, and its expiry (nanoseconds of the node's clock)."""
+    """A marker as received, and its expiry time in nanoseconds of the node's clock."""
 
     def __init__(self, reading: MarkerReading, message: Any, expires_ns: int | None) -> None:
         self.reading = reading
@@ -41,9 +41,9 @@ class _Marker:
 
 
 class MarkerDisplay(StoredMarkersDisplay):
-    """Markers of one topic.
+    """The markers of a topic.
 
-    A marker whose frame cannot be placed yet appears as soon as it can; of the waiting ones, the last
+    A marker whose frame has no known pose yet appears once the pose is known. Of the waiting markers, the last
     ``Filter size`` are kept.
     """
 
@@ -57,13 +57,13 @@ class MarkerDisplay(StoredMarkersDisplay):
         super().__init__(host, identity, config)
         self._markers: dict[str, _Marker] = {}
         self._unplaced: set[str] = set()
-        self._arriving: dict[str, None] = {}  # those that could not be placed yet, oldest first
-        self._frame_poses: dict[tuple[str, int], Transform] = {}  # computed once: an array has thousands of a kind
+        self._arriving: dict[str, None] = {}  # markers not placed yet, oldest first
+        self._frame_poses: dict[tuple[str, int], Transform] = {}  # cached, because arrays have thousands of equal keys
         self._expiry: asyncio.TimerHandle | None = None
         self._clock = host.context.node.get_clock()
 
     def schema(self) -> Schema:
-        """Return the topic, and a check box for each namespace seen."""
+        """Return the topic, and a check box for each namespace received."""
         boxes = tuple(
             PropertySpec(name, "bool", True, "Show the markers of this namespace.") for name in self._namespaces
         )
@@ -80,7 +80,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         self._show()
 
     def changed(self, path: Path) -> None:
-        """Follow the check box over all namespaces."""
+        """Apply a changed property, such as the check box that enables or disables all namespaces."""
         super().changed(path)
         if path == (_NAMESPACES,):
             value = self.properties.flag(_NAMESPACES)
@@ -89,7 +89,7 @@ class MarkerDisplay(StoredMarkersDisplay):
             self.publish_properties()
 
     def reset(self) -> None:
-        """Forget the markers."""
+        """Discard the markers."""
         self._markers.clear()
         self._unplaced.clear()
         self._arriving.clear()
@@ -98,21 +98,21 @@ class MarkerDisplay(StoredMarkersDisplay):
         self._show()
 
     def stop(self) -> None:
-        """Stop listening, and withdraw the files that markers named from pages."""
+        """Stop listening, and withdraw from pages the files that markers referred to."""
         super().stop()
         if self._expiry is not None:
             self._expiry.cancel()
             self._expiry = None
 
     def frames_changed(self) -> None:
-        """Place the markers in the other Fixed Frame."""
+        """Place the markers in the new Fixed Frame."""
         if self.fixed_frame_changed():
             for identity, marker in self._markers.items():
                 self._place_marker(identity, marker)
             self._show()
 
     def transforms_received(self) -> None:
-        """Place the markers that had no transform before."""
+        """Place the markers that had no transform until now."""
         if self._unplaced:
             for identity in list(self._unplaced):
                 self._place_marker(identity, self._markers[identity])
@@ -201,7 +201,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         return known
 
     def _show(self) -> None:
-        """Send the changes: all of a message at once."""
+        """Send the changes, with all changes of a message together."""
         self._frame_poses.clear()
         self.show_markers()
 
@@ -227,14 +227,14 @@ class MarkerDisplay(StoredMarkersDisplay):
 
 
 class MarkerArrayDisplay(MarkerDisplay):
-    """Markers in arrays; any number of them may wait for their frames, while RViz drops them."""
+    """Markers in arrays. Any number of them may wait for their frames, whereas RViz drops them."""
 
     CLASS = "rviz_default_plugins/MarkerArray"
     MESSAGE = "visualization_msgs/msg/MarkerArray"
     SCHEMA = (topic_spec(default="visualization_marker_array", description="visualization_msgs/msg/MarkerArray"),)
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Apply the actions of the markers, in their order."""
+        """Apply the actions of the markers in order."""
         self._check_duplicates(message.markers)
         for marker in message.markers:
             self._do(marker)
@@ -257,9 +257,9 @@ class MarkerArrayDisplay(MarkerDisplay):
 
 
 class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
-    """Messages of any type, drawn as the markers that `markers` returns for them: for displays of other packages.
+    """A base class for displays of other packages: draws messages of any type as markers.
 
-    A subclass sets `CLASS`, `MESSAGE` and `SCHEMA`, with a `topic_spec`.
+    A subclass sets `CLASS`, `MESSAGE` and `SCHEMA`, with a `topic_spec`, and overrides `markers`.
     """
 
     DRAWN_AS = MarkerArrayDisplay.CLASS
@@ -267,14 +267,14 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
 
     @abstractmethod
     def markers(self, message: Any) -> Iterable[Any]:
-        """Return the markers of a message; they replace those of the message before.
+        """Return the markers for a message, which replace the markers of the previous message.
 
         Args:
             message: a message of the type `MESSAGE`; it must not be changed.
 
         Returns:
-            visualization_msgs/msg/Marker, each with a namespace and a number of its own. One without a frame is in that
-            of the message's header, at its time.
+            Messages of type visualization_msgs/msg/Marker, each with a unique pair of namespace and ID. A marker
+            without a frame is placed in the frame of the message's header, at its time.
         """
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
@@ -292,7 +292,7 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
         self._show()
 
     def changed(self, path: Path) -> None:
-        """Draw the last message again."""
+        """Redraw the last message."""
         super().changed(path)
         if path[0] not in (TOPIC, _NAMESPACES):
             self.show_again()

@@ -34,7 +34,7 @@ _MAP = "Octomap"
 
 
 class OctomapDisplay(StoredMarkersDisplay):
-    """The octomap of a topic, as boxes at the current pose of its header's frame."""
+    """The octomap of a topic as boxes, at the current pose of its header's frame."""
 
     CLASS = "octomap_rviz_plugins/OccupancyGrid"
     MESSAGE = "octomap_msgs/msg/Octomap"
@@ -63,18 +63,18 @@ class OctomapDisplay(StoredMarkersDisplay):
         self._frame = ""
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return type, topic and quality of service."""
+        """Return the type, the topic and the QoS of the subscription."""
         return self.MESSAGE, self.properties.text(_TOPIC).strip(), qos_of(self.properties, _TOPIC)
 
     def changed(self, path: Path) -> None:
-        """Subscribe to another topic, or draw the last map again."""
+        """Subscribe to another topic, or redraw the last map."""
         if path[0] == _TOPIC:
             self._restart()
         else:
             self.show_again()
 
     def frames_changed(self) -> None:
-        """Show in the status whether the frame of the map can be placed."""
+        """Show in the status whether the pose of the map's frame is known."""
         problem = self.host.frames.problem(self._frame) if self._frame else None
         if problem:
             self.set_status_row(TRANSFORM, "error", problem)
@@ -82,7 +82,7 @@ class OctomapDisplay(StoredMarkersDisplay):
             self.set_status_row(TRANSFORM, "ok", phrase("Transform OK"))
 
     def reset(self) -> None:
-        """Forget the map."""
+        """Discard the map."""
         self._frame = ""
         self._shown.clear()
         self._store.clear()
@@ -116,7 +116,7 @@ class OctomapDisplay(StoredMarkersDisplay):
         self.frames_changed()
 
     def _chosen(self, cells: Cells, resolution: float) -> Cells:
-        """Return the selected cells, merged into larger ones above the maximum depth."""
+        """Return the selected cells, with cells deeper than the maximum depth merged into larger ones."""
         cells = rendered(cells, self.properties.text("Voxel Rendering"))
         height = cells.centers[:, 2]
         lowest, highest = (self.properties.number(f"{which}. Height Display") for which in ("Min", "Max"))

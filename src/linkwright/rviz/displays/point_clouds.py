@@ -1,4 +1,4 @@
-"""LaserScan, PointCloud and PointCloud2, and points with one value: FluidPressure, Illuminance and others."""
+"""LaserScan, PointCloud, PointCloud2, and points with a single value such as FluidPressure and Illuminance."""
 
 from __future__ import annotations
 
@@ -63,8 +63,8 @@ class _Shown:
 class CloudDisplay(TopicDisplay):
     """Shows points.
 
-    The colours are computed here and sent with the positions; style, size and opacity are the page's part. With a
-    Decay Time every message is content of its own, which is removed when its time is over.
+    The colours are computed here and sent with the positions; the page applies style, size and opacity. With a Decay
+    Time, every message is separate content, which is removed after that time.
     """
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
@@ -78,7 +78,7 @@ class CloudDisplay(TopicDisplay):
         self._computed: dict[str, tuple[float, float]] = {}
 
     def pixel_size(self) -> float:
-        """Return the size of points by their depth, for a camera's pixels; 0 for the size that the properties set."""
+        """Return the size of a point per metre of depth, for a camera's pixels; 0 to use the properties' size."""
         return 0.0
 
     def choose_transformer(self, transformer: str) -> None:
@@ -100,7 +100,7 @@ class CloudDisplay(TopicDisplay):
         )
 
     def show(self, points: Points, pose: Pose, stamp_ns: int) -> None:
-        """Show points whose frame is at a pose, and earlier ones for the Decay Time."""
+        """Show points, given the pose of their frame, and keep earlier ones for the Decay Time."""
         self._offer_transformers(points)
         now = time.monotonic()
         decay = self.properties.number(DECAY_TIME)
@@ -117,7 +117,7 @@ class CloudDisplay(TopicDisplay):
         self._count_points()
 
     def changed(self, path: Path) -> None:
-        """Recolour the points, or let them decay."""
+        """Recolour the points, or apply the Decay Time."""
         super().changed(path)
         if path == (AUTO_INTENSITY,):
             self._keep_bounds(AUTO_INTENSITY, *((name,) for name in INTENSITY_BOUNDS))
@@ -131,7 +131,7 @@ class CloudDisplay(TopicDisplay):
             self._count_points()
 
     def reset(self) -> None:
-        """Forget all points."""
+        """Discard all points."""
         self._shown.clear()
         self._cancel()
         super().reset()
@@ -183,7 +183,7 @@ class CloudDisplay(TopicDisplay):
             self.choose_transformer(transformers[0])
 
     def _keep_bounds(self, auto: str, *paths: Path) -> None:
-        """Keep the last computed bounds when the bounds are not computed any more."""
+        """Keep the last computed bounds in the properties when automatic bounds are switched off."""
         computed = self._computed.get(auto)
         if computed is None or self.properties.flag(auto):
             return
@@ -194,7 +194,7 @@ class CloudDisplay(TopicDisplay):
     # --- decay -------------------------------------------------------------------------------------------------
 
     def _expire(self) -> None:
-        """Remove points older than the Decay Time; without one, all but the newest."""
+        """Remove points older than the Decay Time; if it is zero, remove all but the newest message."""
         if self._decay is not None:
             self._decay.cancel()
             self._decay = None
@@ -247,14 +247,14 @@ _IDENTITY = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 
 
 class PointsDisplay(CloudDisplay):
-    """Shows the points that a subclass makes of each message."""
+    """Shows the points that a subclass extracts from each message."""
 
     @abstractmethod
     def points_of(self, message: Any) -> Points:
         """Return the points of a message, in the frame of its header.
 
         Raises:
-            BadCloudError: the message has none.
+            BadCloudError: the message has no usable points.
         """
 
     def lack_of_points(self, message: Any) -> Phrase | None:
@@ -262,7 +262,7 @@ class PointsDisplay(CloudDisplay):
         return None
 
     def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
-        """Return the points of a message and the pose of their frame; a scanner may move while it scans."""
+        """Return the points of a message and the pose of their frame, corrected if the scanner moved."""
         return points, pose
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
@@ -280,10 +280,10 @@ class PointsDisplay(CloudDisplay):
 
 
 class LaserScanDisplay(PointsDisplay):
-    """The points of a planar scanner.
+    """The points of a planar laser scanner.
 
-    Each ray starts at the scanner's pose at the ray's time, as in laser_geometry; a scan whose end has no
-    transforms yet is placed by its beginning, where RViz would drop it.
+    Each ray starts at the scanner's pose at the ray's time, as in laser_geometry. If there are no transforms yet for
+    the end of a scan, the scan is placed by its beginning, whereas RViz would drop it.
     """
 
     CLASS = "rviz_default_plugins/LaserScan"
@@ -303,7 +303,7 @@ class LaserScanDisplay(PointsDisplay):
         return self._projector.points(message)
 
     def lack_of_points(self, message: Any) -> Phrase | None:
-        """Return the reason why no ray is valid; infinity means far (REP 117)."""
+        """Return the reason why no ray is valid; by REP 117, infinity means that no object is in range."""
         ranges = np.frombuffer(message.ranges, np.float32)
         finite = ranges[np.isfinite(ranges)]
         if len(finite):
@@ -320,7 +320,7 @@ class LaserScanDisplay(PointsDisplay):
         return None
 
     def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
-        """Return the points in the Fixed Frame if the scanner moved, else in its own frame."""
+        """Return the points in the Fixed Frame if the scanner moved, or else in the scanner's own frame."""
         steps = len(message.ranges) - 1
         frame, stamp_ns = self.frame_of(message)
         seconds = steps * float(message.time_increment)
@@ -337,7 +337,7 @@ class LaserScanDisplay(PointsDisplay):
 
 
 class PointCloudDisplay(PointsDisplay):
-    """A cloud of points in the old form of sensor_msgs/msg/PointCloud."""
+    """A cloud of points in the legacy message sensor_msgs/msg/PointCloud."""
 
     CLASS = "rviz_default_plugins/PointCloud"
     MESSAGE = "sensor_msgs/msg/PointCloud"
@@ -368,13 +368,13 @@ class PointCloud2Display(PointsDisplay):
         return points_of_cloud(message)
 
     def lack_of_points(self, message: Any) -> Phrase | None:
-        """Return the status text for a message without a point with finite coordinates."""
+        """Return the status text for a message that has no point with finite coordinates."""
         count = message.width * message.height
         return phrase("All {count} points are NaN or infinite", count=count) if count else None
 
 
 class ScalarDisplay(PointsDisplay):
-    """A point at the origin of the sensor's frame."""
+    """A point at the origin of the sensor's frame, coloured by the measured value."""
 
     FIELD: ClassVar[str]
     """The field of the message with the number, and the channel of the point."""
@@ -386,7 +386,7 @@ class ScalarDisplay(PointsDisplay):
 
 
 class FluidPressureDisplay(ScalarDisplay):
-    """The pressure of air or water, in pascal."""
+    """Shows the pressure of air or water, in pascals."""
 
     CLASS = "rviz_default_plugins/FluidPressure"
     MESSAGE = "sensor_msgs/msg/FluidPressure"
@@ -398,7 +398,7 @@ class FluidPressureDisplay(ScalarDisplay):
 
 
 class IlluminanceDisplay(ScalarDisplay):
-    """The illuminance, in lux."""
+    """Shows the illuminance, in lux."""
 
     CLASS = "rviz_default_plugins/Illuminance"
     MESSAGE = "sensor_msgs/msg/Illuminance"
@@ -410,7 +410,7 @@ class IlluminanceDisplay(ScalarDisplay):
 
 
 class RelativeHumidityDisplay(ScalarDisplay):
-    """The humidity of the air, 0 to 1."""
+    """Shows the relative humidity of the air, 0 to 1."""
 
     CLASS = "rviz_default_plugins/RelativeHumidity"
     MESSAGE = "sensor_msgs/msg/RelativeHumidity"
@@ -422,7 +422,7 @@ class RelativeHumidityDisplay(ScalarDisplay):
 
 
 class TemperatureDisplay(ScalarDisplay):
-    """The temperature, in degrees Celsius; cold is violet, hot is red."""
+    """Shows the temperature, in degrees Celsius; cold is violet and hot is red."""
 
     CLASS = "rviz_default_plugins/Temperature"
     MESSAGE = "sensor_msgs/msg/Temperature"

@@ -1,4 +1,4 @@
-"""Pose, PoseArray, PoseWithCovariance, Odometry and Path: poses as arrows or axes, and lines through them."""
+"""Pose, PoseArray, PoseWithCovariance, Odometry and Path: poses as arrows or axes, and lines through poses."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _AXES = (("Shape",), "Axes")
 
 
 def pose_shape(*, nested: bool = False) -> Schema:
-    """Return the properties for the shape of a pose; ``nested`` as in Odometry: the sizes are below ``Shape``."""
+    """Return the properties for the shape of a pose; with ``nested`` the sizes are below ``Shape``, as in Odometry."""
     description = "Whether a pose is drawn as an arrow along its x or as axes."
     sizes = (
         PropertySpec("Color", "color", "#ff1900", "Colour of the arrow.", when=_ARROW),
@@ -106,7 +106,7 @@ _SOLID = (("Shape",), "Arrow (3D)")
 
 
 def pose_row(pose: Any) -> tuple[float, ...]:
-    """Return x, y, z, qx, qy, qz, qw of a geometry_msgs/msg/Pose."""
+    """Return a geometry_msgs/msg/Pose as x, y, z, qx, qy, qz, qw."""
     at, turn = pose.position, pose.orientation
     return (at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w)
 
@@ -131,7 +131,7 @@ class PoseDisplay(RecentDisplay):
 
 
 class PoseWithCovarianceDisplay(RecentDisplay):
-    """The last pose of a topic, and its uncertainty."""
+    """The last pose of a topic with its uncertainty."""
 
     CLASS = "rviz_default_plugins/PoseWithCovariance"
     MESSAGE = "geometry_msgs/msg/PoseWithCovarianceStamped"
@@ -183,7 +183,7 @@ class PoseArrayDisplay(RecentDisplay):
 
 
 class ParticleCloudDisplay(RecentDisplay):
-    """The particles of nav2's amcl: likelier ones are larger (nav2_rviz_plugins)."""
+    """The particles of nav2's AMCL; more likely particles are larger (nav2_rviz_plugins)."""
 
     CLASS = "nav2_rviz_plugins/ParticleCloud"
     MESSAGE = "nav2_msgs/msg/ParticleCloud"
@@ -208,7 +208,7 @@ _NORM_TOLERANCE = 10e-3
 
 
 class OdometryDisplay(RecentDisplay):
-    """The path of a robot: a mark after each distance or rotation."""
+    """The path of a robot, with a mark after each given distance or rotation."""
 
     CLASS = "rviz_default_plugins/Odometry"
     MESSAGE = "nav_msgs/msg/Odometry"
@@ -239,7 +239,7 @@ class OdometryDisplay(RecentDisplay):
         self._marked: tuple[float, ...] | None = None
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the pose with its covariance, unless it is too near to the last."""
+        """Return the pose with its covariance, or None if it is too close to the last one."""
         row = pose_row(message.pose.pose)
         spread = np.asarray(message.pose.covariance, dtype=np.float64)
         if not self.is_finite(row, spread):
@@ -253,7 +253,7 @@ class OdometryDisplay(RecentDisplay):
         return PoseMarks(np.array([row], dtype=np.float32), spread.astype(np.float32))
 
     def reset(self) -> None:
-        """Forget the marks; the next message makes one."""
+        """Discard the marks; the next message adds one."""
         self._marked = None
         super().reset()
 

@@ -52,8 +52,9 @@ NO_ROWS = (PropertySpec(LINKS, "group", children=_OPTIONS),)
 class RobotRows:
     """The rows of one robot.
 
-    The page arranges them by the Link Tree Style; their places in the file do not depend on it. A link has a box when
-    it has shapes. A joint has one when links with shapes are below it: in a tree all of them, in a list its child.
+    The page arranges the rows by the Link Tree Style; their positions in the file do not depend on it. A link has a
+    check box if it has shapes. A joint has a check box if links with shapes are below it: in a tree all descendants
+    count, in a list only its child.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -65,7 +66,7 @@ class RobotRows:
         self._found: dict[tuple[str, bool], list[str]] = {}
 
     def specs(self, style: str) -> tuple[PropertySpec, ...]:
-        """Return the groups of links and of joints, each in alphabetic order."""
+        """Return the groups of links and of joints, each in alphabetical order."""
         links = tuple(
             self._link(self._robot.links[name]) for name in sorted(self._robot.links) if name not in _OPTION_NAMES
         )
@@ -77,11 +78,11 @@ class RobotRows:
 
     @property
     def boxes(self) -> list[Path]:
-        """Return the check boxes of links."""
+        """The paths of the links' check boxes."""
         return [(LINKS, name) for name in sorted(self._shaped - _OPTION_NAMES)]
 
     def boxes_of(self, joint: str, style: str) -> list[Path]:
-        """Return the check boxes of the links that a joint's check box sets."""
+        """Return the check boxes of the links that a joint's check box controls."""
         return [(LINKS, name) for name in self._links_of(self._robot.joints[joint], style)]
 
     def derived(self, style: str, is_on: Callable[[Path], bool]) -> dict[Path, bool]:
@@ -155,8 +156,8 @@ _MANY_BOXES = 20
 class RobotModelDisplay(ViewerDisplay):
     """A robot, from a description on a topic or in a file.
 
-    With a description that cannot be read the last good robot stays, while RViz would show none. Frames of links
-    that a new description lacks are removed from tf; RViz would show them for as long as it runs.
+    If a new description cannot be read, the last valid robot stays, whereas RViz would show none. Frames of links that
+    a new description lacks are removed from tf; RViz would show them until it is closed.
     """
 
     CLASS = "rviz_default_plugins/RobotModel"
@@ -190,7 +191,7 @@ class RobotModelDisplay(ViewerDisplay):
 
     @property
     def file_problems(self) -> dict[str, list[Phrase]]:
-        """The problems with the files that links name."""
+        """The problems with the files that links refer to, by link."""
         return self._file_problems
 
     def schema(self) -> Schema:
@@ -198,7 +199,7 @@ class RobotModelDisplay(ViewerDisplay):
         return (*_STATIC, *self._robot_specs)
 
     def start(self) -> None:
-        """Follow the source of the description."""
+        """Start to follow the source of the description."""
         problem = self._source.follow()
         by_topic = self.properties.text("Description Source") == "Topic"
         name = "Topic" if by_topic else "Description File"
@@ -211,12 +212,12 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_status()
 
     def stop(self) -> None:
-        """Leave the source, and withdraw the robot's files from pages."""
+        """Stop following the source, and withdraw the robot's files from pages."""
         self._source.close()
         self.context.meshes.replace(self.id, {})
 
     def changed(self, path: Path) -> None:
-        """Follow another source or prefix, or the check box over all links."""
+        """Follow another source or prefix, or apply the check box that enables or disables all links."""
         if path[0] in _SOURCE_NAMES:
             self.start()
         elif path == ("TF Prefix",) and self.robot is not None:
@@ -225,7 +226,7 @@ class RobotModelDisplay(ViewerDisplay):
             self._box_changed(self._rows, path)
 
     def frames_changed(self) -> None:
-        """Show in the status which links can be placed."""
+        """Show in the status which links have a known pose."""
         self._show_status()
 
     def time_changed(self) -> None:
@@ -256,7 +257,7 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_status()
 
     def provenance(self, link: str) -> LinkProvenance | None:
-        """Return the place where a link was written, or None for an unknown link. Takes as long as an expansion."""
+        """Return where a link was written, or None for an unknown link; takes as long as an expansion."""
         from linkwright.xacro.tracing.provenance_text import provenance_lines
 
         element = self.robot.links[link].element if self.robot and link in self.robot.links else None
@@ -289,7 +290,7 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_robot(reading.robot)
 
     def _topic_row(self, *, is_other: bool) -> StatusRow:
-        """Return the row that names the publisher if there are several; logs a warning once if they differ."""
+        """Return the row that names the publisher if there are several; logs a warning once if their texts differ."""
         before = None if self._publisher is None else self._source.current(self._publisher)
         self._publisher = self._source.publisher
         publishers = self._source.publishers()
@@ -341,7 +342,7 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_status()
 
     def recalled(self) -> None:
-        """Restore the order of the rows, and derive the check boxes of joints again."""
+        """Restore the order of the rows, and update the joints' check boxes."""
         if self._rows is not None:
             self._robot_specs = self._rows.specs(self.properties.text(*STYLE))
             self._derive_boxes(self._rows)
@@ -357,7 +358,7 @@ class RobotModelDisplay(ViewerDisplay):
             self.publish_properties()
 
     def _box_changed(self, rows: RobotRows, path: Path) -> None:
-        """Set the check boxes that follow from one, as RViz does, and then those that follow from these."""
+        """Set the check boxes that depend on a changed one, as RViz does, and then those that depend on them."""
         style = self.properties.text(*STYLE)
         followers: list[Path] = []
         if path == STYLE:

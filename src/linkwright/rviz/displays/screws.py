@@ -1,4 +1,4 @@
-"""rviz_default_plugins/TwistStamped, AccelStamped and Wrench: a linear and an angular vector each."""
+"""rviz_default_plugins/TwistStamped, AccelStamped and Wrench: each a linear and an angular vector."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def _screw_specs(linear: str, angular: str) -> Schema:
 
 
 class ScrewDisplay(RecentDisplay):
-    """The last messages of two vectors, as arrows at the origin of their frame."""
+    """The last messages with a linear and an angular vector, as arrows at the origin of their frame."""
 
     LENGTH = ("History Length",)
 
@@ -44,7 +44,7 @@ class ScrewDisplay(RecentDisplay):
 
 
 class TwistDisplay(ScrewDisplay):
-    """Velocities."""
+    """Shows linear and angular velocities."""
 
     CLASS = "rviz_default_plugins/TwistStamped"
     MESSAGE = "geometry_msgs/msg/TwistStamped"
@@ -60,7 +60,7 @@ class TwistDisplay(ScrewDisplay):
 
 
 class AccelDisplay(ScrewDisplay):
-    """Accelerations."""
+    """Shows linear and angular accelerations."""
 
     CLASS = "rviz_default_plugins/AccelStamped"
     MESSAGE = "geometry_msgs/msg/AccelStamped"
@@ -72,7 +72,7 @@ class AccelDisplay(ScrewDisplay):
 
 
 class WrenchDisplay(ScrewDisplay):
-    """Forces and torques."""
+    """Shows forces and torques."""
 
     CLASS = "rviz_default_plugins/Wrench"
     MESSAGE = "geometry_msgs/msg/WrenchStamped"
@@ -87,7 +87,7 @@ class WrenchDisplay(ScrewDisplay):
         return message.wrench.force, message.wrench.torque
 
     def number_list(self, vector: Any) -> list[float]:
-        """Return x, y and z, with NaN replaced with 0 if the property is set."""
+        """Return x, y and z, with NaN replaced by 0 if the property is set."""
         numbers = super().number_list(vector)
         if not self.properties.flag("Accept NaN Values"):
             return numbers

@@ -48,11 +48,11 @@ _UNMOVED = 1e-6
 
 
 class WorldDisplay(TopicDisplay):
-    """All models of a world, drawn by their visuals, each link at its pose in the simulation.
+    """All models of a world, drawn with their visuals, each link at its pose in the simulation.
 
     The poses are in the frame ``world``. If neither tf nor the Fixed Frame has that name, the world is placed so that
-    one of its links, usually a robot's, is at tf's pose for the frame of the same name. If the Fixed Frame has it and
-    tf does not, it is the other way round: tf's frames are placed so that the world does not move.
+    one of its links, usually a robot's, is at tf's pose for the frame of the same name. If the Fixed Frame has that
+    name and tf does not, tf's frames are placed so that the world does not move.
     """
 
     CLASS = WORLD_DISPLAY
@@ -121,7 +121,7 @@ class WorldDisplay(TopicDisplay):
     # --- life --------------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Subscribe to the poses, too."""
+        """Also subscribe to the poses."""
         super().start()
         self._follow()
 
@@ -148,17 +148,17 @@ class WorldDisplay(TopicDisplay):
         self._follow_rays()
 
     def time_changed(self) -> None:
-        """Take the messages that were received while time was paused."""
+        """Process the messages that were received while time was paused."""
         super().time_changed()
         self._side.resume()
         self._rays.resume()
 
     def time_reset(self) -> None:
-        """Keep the world, which is not published again; rays are measured again."""
+        """Keep the world, which is not published again, and measure the rays again."""
         self._rays.forget()
 
     def reset(self) -> None:
-        """Show no world until there is another description."""
+        """Hide the world until another description arrives."""
         self._cancel()
         self._content, self._rows_of, self._sent = WorldContent(), {}, ()
         self._page_problems.clear()
@@ -167,7 +167,7 @@ class WorldDisplay(TopicDisplay):
         self.forget()
 
     def frames_changed(self) -> None:
-        """Place the world again."""
+        """Recompute the pose of the world."""
         self._show_poses()
 
     def transforms_received(self) -> None:
@@ -216,7 +216,7 @@ class WorldDisplay(TopicDisplay):
     # --- descriptions ------------------------------------------------------------------------------------------
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Read a description; the former one is shown until that is done."""
+        """Read a description; the former world is shown until then."""
         self._cancel()
         self._reading = asyncio.get_running_loop().create_task(self._read(message.data))
 
@@ -317,7 +317,7 @@ class WorldDisplay(TopicDisplay):
         self.send(rays, key=_rays_key(rays.lidar))
 
     def _locate(self) -> None:
-        """Compute the pose of the world in the Fixed Frame, from the last poses."""
+        """Compute the pose of the world in the Fixed Frame from the latest poses."""
         if not self._content.links:
             return
         frames = self.context.transforms.names()
@@ -353,7 +353,10 @@ class WorldDisplay(TopicDisplay):
             )
 
     def _place_frames(self, row: int, frame: str, pose: Transform) -> None:
-        """Place tf's frames in the world so that a link has its pose; `pose` is that of its frame in tf's root."""
+        """Place tf's frames in the world so that a frame is at its link's pose.
+
+        `pose` is the frame's pose in tf's root.
+        """
         placed = np.array(compose(tuple(self._poses[row]), invert(pose)))
         transforms, root = self.context.transforms, self._root(frame)
         before = transforms.own(WORLD)
@@ -370,7 +373,10 @@ class WorldDisplay(TopicDisplay):
         )
 
     def _anchor(self, frames: frozenset[str]) -> tuple[int, str, Transform] | None:
-        """Return a link that is a frame of tf, and its pose in the Fixed Frame, or in tf's root if the world leads."""
+        """Return a link that is also a tf frame, with its pose in the Fixed Frame, or in tf's root if the world leads.
+
+        The first item is the link's row.
+        """
         for row in self._anchors:
             frame = _unscoped(self._content.links[row].name)
             if frame not in frames:
@@ -382,7 +388,7 @@ class WorldDisplay(TopicDisplay):
         return None
 
     def _root(self, frame: str) -> str:
-        """Return the root of a frame's tree."""
+        """Return the root frame of the tree that contains a frame."""
         names, parents = self.host.frames.names, self.host.frames.parents
         if frame not in names:
             return frame
@@ -416,11 +422,11 @@ def _scene(
 
 
 def _content(text: str, index: MeshIndex) -> tuple[World, WorldContent]:
-    """Return the world of a text, and the content drawn for it.
+    """Return the world described by the text, and the content that draws it.
 
     Raises:
-        LinkwrightError: it is not SDF, or has neither a world nor a model in it.
-        FrameError: an element in it cannot be placed.
+        LinkwrightError: the text is not SDF, or contains neither a world nor a model.
+        FrameError: an element's pose cannot be determined.
     """
     document, _ = parse_as_gazebo(text, "<world>")
     reading = read(document)
@@ -440,6 +446,6 @@ def _unscoped(name: str) -> str:
 
 
 def _anchors(content: WorldContent) -> tuple[int, ...]:
-    """Return the links that can place the world: those with a unique frame, in the order of the file."""
+    """Return the links that can place the world, which are those with a unique frame name, in file order."""
     counts = Counter(_unscoped(link.name) for link in content.links)
     return tuple(row for row, link in enumerate(content.links) if counts[_unscoped(link.name)] == 1)

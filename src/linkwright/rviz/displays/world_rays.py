@@ -1,4 +1,4 @@
-"""The rays of the lidars of a simulated world, as the simulation measures them, while they are drawn."""
+"""The measured rays of the lidars of a simulated world, received only while they are drawn."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ _MOST_KEPT = 64
 
 
 class LidarRays:
-    """Subscribes to measured rays while they are drawn.
+    """Subscribes to measured lidar rays while they are drawn.
 
     Args:
         host: the display's host.
-        show: called with the rays of a lidar that are drawn.
+        show: called with the rays of a lidar to draw.
         hide: called with the name of a lidar whose rays are not drawn any more.
     """
 
@@ -48,15 +48,15 @@ class LidarRays:
             self._measured(message)
 
     def forget(self) -> None:
-        """Draw no rays until new ones are measured."""
+        """Draw no rays until new measurements arrive."""
         self._last.clear()
         self._let_go(set())
 
     def follow(self, topic: str, choice: str) -> Phrase | None:
-        """Subscribe to the topics of the lidars whose rays are drawn, and to no others.
+        """Subscribe to the ray topics of exactly those lidars whose rays are drawn.
 
         Args:
-            topic: the topic of the rays; empty for none.
+            topic: the topic of the rays; empty for no rays.
             choice: the lidars to draw, see `CHOICES`.
 
         Returns:
@@ -76,7 +76,7 @@ class LidarRays:
         return problem
 
     def resume(self) -> None:
-        """Take the messages that were received while time was paused."""
+        """Process the messages that were received while time was paused."""
         for topic in self._topics.values():
             topic.resume()
 
@@ -95,7 +95,7 @@ class LidarRays:
         ranges = np.asarray(message.ranges, dtype=np.float32)
         if lidar is not None and ranges.size != lidar.measured[0] * lidar.measured[1]:
             return
-        if name in self._last or len(self._last) < _MOST_KEPT:  # its world may arrive later, as in a recording
+        if name in self._last or len(self._last) < _MOST_KEPT:  # its world may arrive later, for example in a recording
             self._last[name] = message
         if lidar is None:
             return

@@ -1,1 +1,1 @@
-"""Poses of frames: sent to pages at the Frame Rate, and stored for a while to place messages by their time."""
+"""Frame poses: sent to pages at the Frame Rate, and stored for a while to place messages at their time."""

@@ -1,4 +1,4 @@
-"""Recent transforms, to place messages by the time in their headers."""
+"""Recent transforms, used to place messages at the time in their headers."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class OwnFrame:
 
     Attributes:
         name: the name of the frame.
-        parent: a frame of tf; None while none is connected with it.
-        pose: the pose of that frame in this one: x, y, z, qx, qy, qz, qw.
+        parent: a tf frame; None while no tf frame is connected to this frame.
+        pose: the pose of `parent` in this frame: x, y, z, qx, qy, qz, qw.
     """
 
     name: str
@@ -36,12 +36,13 @@ class OwnFrame:
 
 
 class FrameHistory:
-    """A tf2 buffer that subscribes only while a display uses it: robots alone need no history.
+    """A tf2 buffer that subscribes only while a display uses it: showing only robots needs no history.
 
-    Displays may place frames that tf does not know, so that these can be the Fixed Frame; only this viewer sees them.
+    Displays may place frames that tf does not know, which can then be the Fixed Frame. Only this viewer sees these
+    frames.
 
     Args:
-        node: to subscribe with.
+        node: the node that subscribes.
 
     Attributes:
         on_own: called when a frame that tf does not know moves.
@@ -61,7 +62,7 @@ class FrameHistory:
         return BufferCore(logger=self._node.get_logger())
 
     def use(self, listener: Callable[[], None]) -> Callable[[], None]:
-        """Subscribe, and call back whenever transforms arrive; returns a function that ends that."""
+        """Subscribe, and call the listener whenever transforms arrive; return a function that ends the subscription."""
         self._listeners.append(listener)
         if not self._subscriptions:
             for topic, static, qos in (("/tf", False, TF_QOS), ("/tf_static", True, STATIC_TF_SUBSCRIPTION_QOS)):
@@ -82,11 +83,11 @@ class FrameHistory:
 
         Args:
             fixed_frame: the Fixed Frame.
-            frame: the frame, which may be the Fixed Frame though tf does not know it.
+            frame: the frame, which may be the Fixed Frame even if tf does not know it.
             stamp_ns: the time, nanoseconds; 0 for the latest.
 
         Raises:
-            TransformException: tf2's reasons why there is none.
+            TransformException: the pose is not known; the text is tf2's.
         """
         if frame == fixed_frame:
             return _IDENTITY
@@ -121,7 +122,7 @@ class FrameHistory:
         """Place a frame for a display, or withdraw it.
 
         Args:
-            display: its id.
+            display: the display's ID.
             own: the frame and its pose; None to withdraw it.
         """
         if own is None:
@@ -133,7 +134,7 @@ class FrameHistory:
             listener()
 
     def forget(self) -> None:
-        """Forget all moving transforms: time was reset."""
+        """Discard all moving transforms because time was reset."""
         self._buffer.clear()
 
     def _add_transforms(self, message: TFMessage, *, static: bool) -> None:

@@ -1,6 +1,6 @@
-"""Sends transforms from the graph to the pages: at most at the Frame Rate, at once after a pause, and only changes.
+"""Sends transforms from the graph to pages: only changes, at most at the Frame Rate, immediately after a pause.
 
-`TimeControl` has the time at which frames are shown, `FrameView` the information for displays.
+`TimeControl` provides the time at which frames are shown, and `FrameView` the information for displays.
 """
 
 from __future__ import annotations
@@ -58,13 +58,13 @@ _APPROACH = 0.3
 
 @dataclass(frozen=True, slots=True)
 class FrameView:
-    """The frames, their parents, and which of them can be placed in the Fixed Frame.
+    """The frames, their parents, and which of them have a known pose in the Fixed Frame.
 
     Attributes:
         fixed_frame: the Fixed Frame, which may be unknown to tf.
-        names: the frames tf knows.
-        parents: index of each frame's parent in `names`, -1 for a root.
-        placed: the frames with a transform to the Fixed Frame; this one always is, as in RViz.
+        names: the frames that tf knows.
+        parents: the index of each frame's parent in `names`, -1 for a root.
+        placed: the frames with a transform to the Fixed Frame; the Fixed Frame is always included, as in RViz.
     """
 
     fixed_frame: str = ""
@@ -73,14 +73,14 @@ class FrameView:
     placed: frozenset[str] = field(default_factory=frozenset)
 
     def problem(self, frame: str) -> Phrase | None:
-        """Return RViz's text for a frame that cannot be placed, or None."""
+        """Return RViz's error text for a frame without a known pose, or None."""
         if frame in self.placed:
             return None
         return phrase("No transform from [{frame}] to [{fixed_frame}]", frame=frame, fixed_frame=self.fixed_frame)
 
 
 def transform_status(frames: FrameView, frame: str) -> StatusRow:
-    """Return the Transform row of a display in a frame (or in ``<Fixed Frame>``), in RViz's words."""
+    """Return the Transform status row of a display in a frame (or in ``<Fixed Frame>``), in RViz's words."""
     if frame == FIXED_FRAME or frame in frames.placed:
         return StatusRow("Transform", "ok", phrase("Transform OK"))
     return StatusRow(
@@ -93,19 +93,19 @@ def transform_status(frames: FrameView, frame: str) -> StatusRow:
 class TimeControl:
     """RViz's Time panel: Pause, and Synchronization with its Source.
 
-    While paused displays take no messages and frames do not move. Exact shows the frames at the time of the source's
-    last message; Approximate lets time follow the present with the source's delay.
+    While paused, displays process no messages and frames do not move. Exact shows the frames at the time of the
+    source's last message; Approximate uses the current time minus the source's delay.
 
     Args:
-        clock: the viewer's.
+        clock: the viewer's clock.
         changed: called when one of the attributes has changed.
-        signalled: called when the source took a message, so that frames must be updated.
+        signalled: called when the source has processed a message, after which frames must be updated.
 
     Attributes:
         paused: whether time is paused.
         mode: Off, Exact or Approximate.
-        source: the name of the leading display.
-        sources: names of the displays that can lead, in the order of their first messages.
+        source: the name of the source display.
+        sources: the names of the displays that can be the source, in the order of their first messages.
     """
 
     def __init__(
@@ -123,7 +123,7 @@ class TimeControl:
         self._paused_ns = 0
 
     def set(self, *, paused: bool, mode: SyncMode, source: str) -> None:
-        """Pause or resume; follow a source or none."""
+        """Pause or resume time, and set the synchronization mode and source."""
         if paused and not self.paused:
             self._paused_ns = self.now_ns()
         if (mode, source) != (self.mode, self.source):
@@ -143,7 +143,7 @@ class TimeControl:
         self._signalled()
 
     def lookup_ns(self) -> int | None:
-        """Return the time at which frames are to be shown, nanoseconds; None for the latest one."""
+        """Return the time at which frames are shown, nanoseconds; None for the latest time."""
         if self.paused and self.mode != "Off":
             return self._paused_ns
         if self.mode == "Exact":
@@ -162,7 +162,7 @@ class TimeControl:
         return self._clock.now_ns() - (self._current_delay_ns if self.mode == "Approximate" else 0)
 
     def reset(self) -> None:
-        """Forget the times of messages."""
+        """Discard the recorded message times."""
         self.sources.clear()
         self._exact_ns = self._delay_ns = self._current_delay_ns = 0
         self._paused_ns = self._clock.now_ns()
@@ -173,13 +173,13 @@ class FrameAudience(Protocol):
     """The pages that receive frames."""
 
     def __len__(self) -> int:
-        """Return the number of pages; without pages nothing is computed."""
+        """Return the number of pages; nothing is computed if it is 0."""
 
     def publish(self, message: FrameTable, /) -> None:
         """Send a new frame table, before transforms that need it."""
 
     def send_transforms(self, frame: bytes, /) -> None:
-        """Send a binary frame."""
+        """Send a binary frame with transforms."""
 
 
 class FrameStream:
@@ -187,20 +187,20 @@ class FrameStream:
 
     A frame that tf does not know may be the Fixed Frame if a display places it (`FrameHistory.place`).
 
-    A robot of a single link has no transforms, so tf does not know its frame. When that is the Fixed Frame it is sent
-    all the same, as the identity: RViz places a frame in itself without asking tf.
+    A robot with a single link has no transforms, so tf does not know its frame. If that is the Fixed Frame, it is still
+    sent, as the identity: RViz places a frame in itself without querying tf.
 
     Args:
-        node: to subscribe with.
-        pages: the pages that see the result.
+        node: the node that subscribes.
+        pages: the pages that receive the transforms.
         time: whether time is paused, and the time at which frames are shown.
         history: the history of transforms, for a time other than the latest.
-        on_frames: called when frames appear or disappear, or when it changes whether they can be placed.
+        on_frames: called when frames appear or disappear, or when it changes whether their poses are known.
         own_frames: returns the frames of robots' links, which tf may not know.
 
     Attributes:
         fixed_frame: the Fixed Frame.
-        rate: most updates a second, hertz.
+        rate: the maximum update rate, Hz.
         fade_time: the shortest Frame Timeout of the displays, seconds; None when no display shows ages.
     """
 
@@ -243,7 +243,7 @@ class FrameStream:
         self._paused_ns: int | None = None
 
     def start(self) -> None:
-        """Subscribe, and start sending."""
+        """Subscribe and start sending."""
         for topic, static, qos in (("/tf", False, TF_QOS), ("/tf_static", True, STATIC_TF_SUBSCRIPTION_QOS)):
             self._node.create_subscription(
                 TFMessage, topic, partial(self._add_transforms, static=static), qos
@@ -265,7 +265,7 @@ class FrameStream:
             self._release = None
 
     def time_changed(self) -> None:
-        """Update, because time was paused, resumed, or set to another source."""
+        """Update the frames after time was paused, resumed, or set to another source."""
         if self._time.paused:
             self._paused_ns = self._paused_ns or self._clock.now_ns()
         else:
@@ -277,31 +277,31 @@ class FrameStream:
         self.refresh()
 
     def forget(self) -> None:
-        """Forget all moving transforms: time was reset."""
+        """Discard all moving transforms because time was reset."""
         self._held.clear()
         self._buffer.clear()
         self.refresh()
 
     def look_soon(self) -> None:
-        """Update as soon as the rate allows."""
+        """Schedule an update as soon as the rate allows."""
         self._wake()
 
     def robot_changed(self, gone: set[str]) -> None:
-        """Forget the frames that a new robot lacks, and check whether it has one that tf does not know."""
+        """Remove the frames that a new robot lacks, and check whether the robot has a frame that tf does not know."""
         known = gone.intersection(self._buffer.frames())
         if known:
             self._buffer.remove(known)
         self._wake()
 
     def refresh(self) -> None:
-        """Update now, even without pages: the Fixed Frame or the robot has changed, or a page opens."""
+        """Update now, even without pages, because the Fixed Frame or the robot has changed, or a page opens."""
         if self._later is not None:
             self._later.cancel()
         self._look()
 
     @property
     def opening(self) -> tuple[FrameTable, bytes]:
-        """Return the frame table and the last binary frame, for a page that opens; empty before there is one."""
+        """The frame table and the last binary frame for a page that opens; empty before the first update."""
         return self._table, self._frame
 
     def _add_transforms(self, message: TFMessage, *, static: bool) -> None:
@@ -352,7 +352,7 @@ class FrameStream:
         self._notify_displays(snapshot, rows, fixed_frame, changed=changed)
 
     def _snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
-        """Return the poses of all frames in the Fixed Frame, which may be one that a display places."""
+        """Return the poses of all frames in the Fixed Frame, which may be a frame placed by a display."""
         # The buffer may know the frame before the history does.
         own = None if self._buffer.knows(fixed_frame) else self._history.own(fixed_frame)
         if own is None or own.parent is None:
@@ -361,12 +361,12 @@ class FrameStream:
         return replace(snapshot, poses=compose(own.pose, snapshot.poses))
 
     def _stands_alone(self, frame: str) -> bool:
-        """Return whether a frame that tf does not know is a robot's or a display's, without a connection to tf's."""
+        """Return whether a frame unknown to tf belongs to a robot or a display and is not connected to tf's frames."""
         own = self._history.own(frame)
         return frame in self._own_frames() or (own is not None and own.parent is None)
 
     def _poses_then(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
-        """Return the poses of frames at the time to be shown, or the present ones if that time is unknown."""
+        """Return the poses of frames at the time to be shown, or the current poses if that time is unknown."""
         stamp_ns = self._time.lookup_ns()
         self._follow(needed=stamp_ns is not None)
         if stamp_ns is None:
@@ -378,7 +378,7 @@ class FrameStream:
         return poses
 
     def _follow(self, *, needed: bool) -> None:
-        """Subscribe to the history while another time than the latest is shown."""
+        """Subscribe to the history while a time other than the latest is shown."""
         if needed and self._release is None:
             self._release = self._history.use(lambda: None)
         elif not needed and self._release is not None:
@@ -418,8 +418,8 @@ class FrameStream:
     def _next_due(self) -> float:
         """Return the earliest time of the next update.
 
-        A slightly late update does not delay the next one: transforms that arrive at the rate would otherwise wait
-        longer and longer, until one of them is left out.
+        A slightly late update does not delay the next one. Otherwise, transforms that arrive at this rate would wait
+        longer and longer, until one of them is skipped.
         """
         period = _HURRY / self.rate
         in_time = self._looked_at - self._due < period / 2

@@ -1,4 +1,4 @@
-"""Markers: visualization_msgs in the form that pages draw."""
+"""Markers: conversion of visualization_msgs to the form that pages draw."""
 
 from linkwright.rviz.markers.shapes import BadMarkerError, MarkerReading, MarkerStore, read_marker
 

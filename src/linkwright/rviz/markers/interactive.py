@@ -1,7 +1,7 @@
-"""Interactive markers: a client of a server, and the conversion of its markers to what the page draws.
+"""Interactive markers: a client of a marker server, and the conversion of markers to drawable shapes.
 
-It receives all markers first, then changes, and all of them again after a lost change. Controls without markers
-get the arrows, rings and buttons that the ``interactive_markers`` package gives them.
+The client receives all markers first, then changes, and all markers again after a lost change. Controls without markers
+get the same arrows, rings and buttons as in the ``interactive_markers`` package.
 """
 
 from __future__ import annotations
@@ -44,13 +44,13 @@ _UPDATE = 1
 
 @dataclass(slots=True)
 class ClientEvents:
-    """The events of a connection to a server.
+    """Callbacks for the events of a connection to a server.
 
     Attributes:
-        everything: its markers, at the beginning and after a lost update.
-        update: a visualization_msgs/msg/InteractiveMarkerUpdate.
-        gone: the server has no markers now, or has gone.
-        status: the state of the connection, for the display's status.
+        everything: receives all markers of the server, at the beginning and after a lost update.
+        update: receives a visualization_msgs/msg/InteractiveMarkerUpdate.
+        gone: called when the server has no markers any more or has disappeared.
+        status: receives the state of the connection, for the display's status.
     """
 
     everything: Callable[[list[Any]], None]
@@ -105,7 +105,7 @@ class InteractiveMarkerClient:
             self._look.cancel()
             self._look = None
         self._request = None
-        with suppress(ValueError):  # the node may have been destroyed before
+        with suppress(ValueError):  # the node may already have been destroyed
             self._node.destroy_subscription(self._subscription)
             self._node.destroy_publisher(self._feedback)
             self._node.destroy_client(self._service)
@@ -129,7 +129,7 @@ class InteractiveMarkerClient:
 
     def _answered(self, request: Any, response: Any) -> None:
         if request is not self._request or response is None:
-            return  # from a server that has gone since
+            return  # from a server that has disappeared since
         self._request = None
         self._sequence = response.sequence_number
         self._events.everything(list(response.markers))
@@ -143,7 +143,7 @@ class InteractiveMarkerClient:
             self._early = [*self._early, update][-_UPDATE_DEPTH:]
             return
         if update.seq_num <= self._sequence and update.type == _UPDATE:
-            return  # the first answer includes it already
+            return  # the first response already includes it
         expected = self._sequence + (1 if update.type == _UPDATE else 0)
         if update.seq_num != expected:
             self._reset()
@@ -186,12 +186,12 @@ def read_interactive_marker(
 
     Args:
         message: a visualization_msgs/msg/InteractiveMarker.
-        index: finds the files that it names.
-        frames: places markers that name a frame of their own.
+        index: finds the files that the marker refers to.
+        frames: returns poses for markers that specify their own frame.
         transparent: whether default arrows and rings are transparent.
 
     Raises:
-        BadMarkerError: it cannot be drawn.
+        BadMarkerError: the marker cannot be drawn.
     """
     scale = message.scale or 1.0
     pose = pose_of(message.pose)
@@ -265,7 +265,7 @@ def _marker(marker: Any, message: Any, index: MeshIndex, frames: FramePlacer) ->
     frame = marker.header.frame_id.removeprefix("/")
     reference = message.header.frame_id.removeprefix("/")
     if frame:
-        # The marker has a pose of its own, but here it is attached to the control.
+        # The marker has its own pose, but here it is attached to the control.
         in_reference = compose(frames(reference, frame), _as_pose(shape.pose))
         shape.pose = list(compose(invert(_as_pose(pose_of(message.pose))), in_reference))
     return shape
@@ -292,14 +292,14 @@ def _default_markers(
 
 
 def _color_of(orientation: list[float]) -> list[float]:
-    """Return red for an axis along x, green along y, blue along z, mixed between."""
+    """Return the colour of an axis: red along x, green along y, blue along z, mixed in between."""
     axis = np.abs(rotation_matrix(orientation)[:, 0])
     color: list[float] = (axis / axis.max()).tolist()
     return color
 
 
 def _ring(mode: InteractionMode) -> tuple[NDArray[np.float32], NDArray[np.float64] | None]:
-    """Return triangles of a ring about x with an inner radius of a half, and how dark each is, or None."""
+    """Return the triangles of a ring about x with inner radius 0.5, and their darkness or None."""
     angles = np.arange(_RING_STEPS) * (2 * np.pi / _RING_STEPS)
     inner = 0.5 * np.stack([np.zeros(_RING_STEPS), np.cos(angles), np.sin(angles)], axis=1)
     outer = (1 + _RING_WIDTH) * inner
@@ -308,10 +308,10 @@ def _ring(mode: InteractionMode) -> tuple[NDArray[np.float32], NDArray[np.float6
         return np.roll(ring, -steps, axis=0)
 
     inner_1, outer_1, outer_2 = after(inner, 1), after(outer, 1), after(outer, 2)
-    if mode == "rotate_axis":  # slanting teeth, alternately light and dark
+    if mode == "rotate_axis":  # slanted teeth, alternately light and dark
         corners = np.stack([inner, outer_1, inner_1, inner_1, outer_1, outer_2], axis=1)
         shades = np.repeat(_DARK + (1 - _DARK) * (np.arange(_RING_STEPS) % 2), 2)
-    elif mode == "move_rotate":  # dark points inward, light ones outward
+    elif mode == "move_rotate":  # dark points inward, light points outward
         inner_2 = after(inner, 2)
         dark = np.stack([inner, outer_1, inner_1, inner_1, outer_1, inner_2], axis=1)
         light = np.stack([outer, outer_1, inner, outer_1, outer_2, inner_2], axis=1)

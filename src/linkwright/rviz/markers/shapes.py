@@ -1,4 +1,4 @@
-"""Conversion of visualization_msgs/msg/Marker to the page's shapes, and the markers that a display shows.
+"""Conversion of visualization_msgs/msg/Marker to the page's shapes, and a store of a display's markers.
 
 The rules and their texts are RViz's.
 """
@@ -29,7 +29,7 @@ _NO_UVS = np.empty((0, 2), dtype=np.float32)
 
 
 class BadMarkerError(ValueError):
-    """A marker cannot be drawn; the text gives the reason."""
+    """Raised when a marker cannot be drawn; the text gives the reason."""
 
 
 @dataclass(slots=True)
@@ -37,8 +37,8 @@ class MarkerReading:
     """A marker as it is drawn, before it is placed.
 
     Attributes:
-        shape: with the pose in the message's frame, until it is placed.
-        pose: in the message's frame.
+        shape: the shape, with the pose in the message's frame until it is placed.
+        pose: the pose in the message's frame.
         warning: a probable mistake in the message, or None.
     """
 
@@ -60,18 +60,18 @@ def made_marker(
     colors: NDArray[np.float32] = _NO_COLORS,
     mesh: MarkerMesh | None = None,
 ) -> MarkerShape:
-    """Return a marker from its parts, without a message.
+    """Return a marker created from parts instead of a message.
 
     Args:
-        namespace: its namespace.
-        name: within the namespace.
+        namespace: the marker's namespace.
+        name: the marker's name within the namespace.
         kind: the kind of its shape.
         pose: x, y, z, qx, qy, qz, qw in `frame`.
-        scale: x, y, z, as visualization_msgs/msg/Marker has it for the kind.
+        scale: x, y, z, as in visualization_msgs/msg/Marker for this kind.
         color: red, green, blue, alpha, from 0 to 1.
-        frame: the frame that it follows; the Fixed Frame if empty.
-        points: shape (N, 3), metres.
-        colors: one for each point, shape (N, 4); or none.
+        frame: the frame that the marker follows; empty for the Fixed Frame.
+        points: the points, shape (N, 3), metres.
+        colors: one colour for each point, shape (N, 4), or no colours.
         mesh: the file of a ``mesh``.
     """
     return MarkerShape(
@@ -92,7 +92,7 @@ def made_marker(
 
 
 def marker_id(message: Any) -> str:
-    """Return the name in RViz's status rows: ``<namespace>/<number>``."""
+    """Return the marker's name in RViz's status rows: ``<namespace>/<number>``."""
     return f"{message.ns}/{message.id}"
 
 
@@ -101,10 +101,10 @@ def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
 
     Args:
         message: a visualization_msgs/msg/Marker whose action is ADD.
-        index: finds the files that it names.
+        index: finds the files that the marker refers to.
 
     Raises:
-        BadMarkerError: it cannot be drawn.
+        BadMarkerError: the marker cannot be drawn.
     """
     if not 0 <= message.type < len(_KINDS):
         raise BadMarkerError(phrase("Unknown marker type: {type}", type=message.type))
@@ -136,12 +136,12 @@ def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
 
 
 def placed_in(frame: Transform, reading: MarkerReading) -> list[float]:
-    """Return the marker's pose in the frame in which the pose of its own frame is given."""
+    """Return the marker's pose in the reference frame, given the pose of the marker's frame in it."""
     return list(compose(frame, reading.pose))
 
 
 def pose_of(pose: Any) -> list[float]:
-    """Return a geometry_msgs/msg/Pose as x, y, z, qx, qy, qz, qw, with a unit quaternion."""
+    """Return a geometry_msgs/msg/Pose as x, y, z, qx, qy, qz, qw, with a normalized quaternion."""
     return list(_pose(pose))
 
 
@@ -151,7 +151,7 @@ def _pose(pose: Any) -> Transform:
 
 
 def unit_quaternion(q: Any) -> Quaternion:
-    """Return a geometry_msgs/msg/Quaternion with length one; one that was not set means no rotation, as in RViz."""
+    """Return a geometry_msgs/msg/Quaternion with unit length; an unset one means no rotation, as in RViz."""
     return normalized(q.x, q.y, q.z, q.w)
 
 
@@ -240,7 +240,7 @@ _CHECKS: dict[MarkerKind, Callable[[MarkerShape], Phrase | None]] = {
 
 
 def _mesh(message: Any, shape: MarkerShape, index: MeshIndex) -> MarkerMesh:
-    """Return the mesh: the bytes in the message, which Iron and later may carry, or the file that it names."""
+    """Return the mesh: data in the message, possible since Iron, or the file that the message refers to."""
     name = message.mesh_resource
     carried = message.mesh_file
     if carried.filename and len(carried.data):
@@ -296,12 +296,12 @@ _MOST_GONE = 5000
 
 
 class MarkerStore:
-    """Markers by id, with a revision for each change, so that a page can receive the changes since its last one.
+    """Markers by ID, with a revision for each change, which lets a page receive the changes since its last one.
 
-    It is the `outbox.Changes` of its display.
+    The store is the `outbox.Changes` of its display.
 
     Args:
-        display: the id of the display.
+        display: the ID of the display.
     """
 
     def __init__(self, display: str) -> None:
@@ -321,18 +321,18 @@ class MarkerStore:
 
     @property
     def shapes(self) -> list[MarkerShape]:
-        """The markers shown."""
+        """The markers that are shown."""
         return [shape for _, shape in self._shown.values()]
 
     def put(self, shape: MarkerShape) -> None:
-        """Show a marker, replacing one with its id."""
+        """Show a marker, replacing any marker with the same ID."""
         self._change += 1
         self._gone.pop(shape.id, None)
-        self._shown.pop(shape.id, None)  # so that the last change is last in the order
+        self._shown.pop(shape.id, None)  # keeps the last change last in the order
         self._shown[shape.id] = (self._change, shape)
 
     def remove(self, identity: str) -> bool:
-        """Remove a marker; False if it was not shown."""
+        """Remove a marker, and return whether it was shown."""
         if self._shown.pop(identity, None) is None:
             return False
         self._change += 1
@@ -350,7 +350,7 @@ class MarkerStore:
         self._gone.clear()
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
-        """Return the changes since a revision, for a page that has all up to it."""
+        """Return the changes since a revision, for a page that has all earlier changes."""
         if seen == self._change:
             return None, seen
         if self._packed is None or self._packed[:2] != (seen, self._change):

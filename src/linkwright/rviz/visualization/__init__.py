@@ -1,1 +1,1 @@
-"""A visualization: a configuration, its displays and its edits, as one set of pages sees them."""
+"""A visualization: a configuration, its displays and its edits, shared by a group of pages."""

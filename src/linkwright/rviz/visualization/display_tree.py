@@ -1,4 +1,4 @@
-"""The displays of a configuration: adding, moving, grouping and enabling them; undo and redo of all of it."""
+"""The displays of a configuration: adding, moving, grouping and enabling them, with undo and redo."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ class Edit(Generic[State]):
 
     Args:
         name: the name of the edit, for menus.
-        swap: restores a state, and returns the present one.
-        before: the state before.
+        swap: restores a state, and returns the current one.
+        before: the state before the edit.
         subject: quick successive edits of one subject are merged, see `History.is_at`; None for no merging.
     """
 
@@ -46,11 +46,11 @@ class Edit(Generic[State]):
 
 
 class History:
-    """The edits that can be undone and redone, and how many of them the saved file has.
+    """The edits that can be undone and redone, and how many of them are in the saved file.
 
     Args:
         changed: called whenever `undoable`, `redoable` or `unsaved` may have changed.
-        clock: seconds.
+        clock: returns the time in seconds.
     """
 
     def __init__(self, changed: Callable[[], None], clock: Callable[[], float] = time.monotonic) -> None:
@@ -74,11 +74,11 @@ class History:
 
     @property
     def unsaved(self) -> bool:
-        """Whether the file lacks an edit."""
+        """Whether an edit is missing from the saved file."""
         return self._touched or self._saved_at != len(self._done)
 
     def is_at(self, subject: str) -> bool:
-        """Return whether an edit of a subject would be merged with the last one, as the steps of a drag are."""
+        """Return whether an edit of a subject would be merged with the last edit, like the steps of a drag."""
         follows = self._clock() - self._last < PAUSE and not self._undone and self._saved_at != len(self._done)
         return follows and bool(self._done) and self._done[-1].subject == subject
 
@@ -87,10 +87,10 @@ class History:
         self._last = self._clock()
 
     def add(self, edit: Edit[Any]) -> None:
-        """Add an edit that was done."""
+        """Add an edit that has been made."""
         self._last = self._clock()
         if self._saved_at is not None and self._saved_at > len(self._done):
-            self._saved_at = None  # the saved state is on the branch that is dropped here
+            self._saved_at = None  # the saved state is on the branch that is discarded here
         self._undone.clear()
         self._done.append(edit)
         if len(self._done) > LONGEST:
@@ -113,7 +113,7 @@ class History:
             self._end_drag()
 
     def redo(self) -> None:
-        """Redo the edit that was undone last, if there is one."""
+        """Redo the most recently undone edit, if there is one."""
         if self._undone:
             edit = self._undone.pop()
             edit.turn()
@@ -121,12 +121,12 @@ class History:
             self._end_drag()
 
     def saved(self) -> None:
-        """Note that the file has all edits."""
+        """Mark all edits as saved."""
         self._saved_at, self._touched = len(self._done), False
         self._changed()
 
     def clear(self) -> None:
-        """Clear the history: another file was opened."""
+        """Clear the history because another file was opened."""
         self._done.clear()
         self._undone.clear()
         self._end_drag()
@@ -145,19 +145,19 @@ MAXIMUM_NESTING = 20
 
 
 class DisplayTree:
-    """The displays, which follow the entries of the configuration.
+    """The displays, which correspond to the entries of the configuration.
 
-    Changes here can be undone. A display that is removed is stopped; undo creates another one with its id and its part
-    of the file.
+    Changes made through this class can be undone. A removed display is stopped; undo creates another one with the same
+    ID and section of the file.
 
     Args:
         config: the configuration with the entries.
-        host: the visualization that they are part of.
+        host: the visualization that the displays are part of.
         history: the history of edits.
         rearranged: called when displays were added, removed, moved or renamed, before new ones start.
 
     Attributes:
-        displays: every display, each group before what is in it.
+        displays: every display, each group before its contents.
     """
 
     def __init__(
@@ -194,13 +194,13 @@ class DisplayTree:
             display.stop()
 
     def find(self, identity: str) -> ViewerDisplay | None:
-        """Return the display with an id."""
+        """Return the display with an ID, or None."""
         return next((display for display in self.displays if display.id == identity), None)
 
     # --- edits -------------------------------------------------------------------------------------------------
 
     def check(self, display: ViewerDisplay, value: bool) -> None:
-        """Enable or disable a display with its content."""
+        """Enable or disable a display and its content."""
         if value == display.config.checked:
             return
         before, enabled = display.config.box, self._enabled()
@@ -218,12 +218,12 @@ class DisplayTree:
         """Add a display at the end of a group or of the list.
 
         Args:
-            entry: its part of the file.
-            group: the group for it.
-            prepare: sets properties before it starts.
+            entry: the display's section of the file.
+            group: the group that will contain the display; None for the top level.
+            prepare: sets properties before the display starts.
 
         Raises:
-            ValueError: it is not a group, or nested too deeply, or there are too many displays.
+            ValueError: `group` is not a group, the display would be nested too deeply, or there are too many displays.
         """
         self._check_room([entry])
         _check_nesting(group, [entry])
@@ -250,7 +250,7 @@ class DisplayTree:
         self._rearrange(_named("duplicate", displays), copy)
 
     def remove(self, displays: Sequence[ViewerDisplay]) -> None:
-        """Remove displays with their content."""
+        """Remove displays with their contents."""
 
         def take_away() -> None:
             for entry in _outermost(displays):
@@ -264,7 +264,8 @@ class DisplayTree:
         """Move displays into a group, before one of its displays or to the end.
 
         Raises:
-            ValueError: it is not a group, or is inside of one of the displays, or nested too deeply.
+            ValueError: the target is not a group, is inside one of the displays, or the displays would be nested too
+                deeply.
         """
         moved = _outermost(displays)
         if group is not None and (not group.is_group or any(group in entry.walk() for entry in moved)):
@@ -282,7 +283,7 @@ class DisplayTree:
         self._rearrange(_named("move", displays), shift)
 
     def gather(self, displays: Sequence[ViewerDisplay], name: str) -> None:
-        """Put displays into a new group, in the place of the first of them.
+        """Put displays into a new group, at the position of the first of them.
 
         Raises:
             ValueError: there are too many displays, or the group is nested too deeply.
@@ -323,7 +324,7 @@ class DisplayTree:
     # --- what edits do -----------------------------------------------------------------------------------------
 
     def _swap_box(self, identity: str, box: list[Memory]) -> list[Memory]:
-        """Restore the file's entry of a display's check box; returns the present one."""
+        """Restore the file's entry of a display's check box, and return the replaced entry."""
         display = self.find(identity)
         if display is None:
             return box
@@ -333,14 +334,17 @@ class DisplayTree:
         return now
 
     def _box_set(self, display: ViewerDisplay, enabled: dict[DisplayConfig, bool]) -> None:
-        """Send pages a display's check box, and notify displays that it switched; `enabled` is the state before."""
+        """Send a display's check box to pages, and notify displays whose enabled state has changed.
+
+        `enabled` is the state before the change.
+        """
         display.set_checked(display.config.checked)
         for other in self.displays:
             if other.enabled != enabled[other.config]:
                 other.enabled_changed()
 
     def arrange(self, arrangement: Arrangement) -> Arrangement:
-        """Restore an arrangement; returns the present one."""
+        """Restore an arrangement, and return the replaced one."""
         before, enabled = self._config.arrangement(), self._enabled()
         self._config.arrange(arrangement)
         self._follow(enabled)
@@ -356,7 +360,7 @@ class DisplayTree:
         return {display.config: display.enabled for display in self.displays}
 
     def _follow(self, enabled: dict[DisplayConfig, bool], made: Sequence[ViewerDisplay] = ()) -> None:
-        """Make the displays match the entries: start new ones, stop removed ones."""
+        """Match the displays to the entries: start new displays and stop removed ones."""
         there = {display.config: display for display in self.displays}
         new = {display.config: display for display in made}
         entries = list(self._config.walk())
@@ -398,17 +402,17 @@ def _check_nesting(group: DisplayConfig | None, entries: Sequence[DisplayConfig]
 
 
 def _depth(group: DisplayConfig | None) -> int:
-    """Return the number of groups around the content of a group."""
+    """Return the number of groups that enclose the contents of a group."""
     return 0 if group is None else 1 + _depth(group.group)
 
 
 def _height(entry: DisplayConfig) -> int:
-    """Return the number of groups around the innermost display of an entry, including itself."""
+    """Return the number of nested groups in an entry, including the entry itself if it is a group."""
     return 1 + max(map(_height, entry.displays), default=0) if entry.is_group else 0
 
 
 def _outermost(displays: Sequence[ViewerDisplay]) -> list[DisplayConfig]:
-    """Return the entries that are not inside another one of them."""
+    """Return the entries of displays that are not inside another of the displays."""
     entries = [display.config for display in displays]
     return [entry for entry in entries if not any(entry in other.walk() for other in entries if other is not entry)]
 

@@ -1,6 +1,6 @@
-"""A visualization: a configuration, its displays, and its undo history.
+"""A visualization: a configuration, its displays and its undo history.
 
-Pages share one, and a page may request its own.
+Pages share one visualization, but a page may request its own.
 """
 
 from __future__ import annotations
@@ -39,19 +39,19 @@ _FRAME_RATE = "Frame Rate"
 
 
 class ManagerOwner(Protocol):
-    """The owner of managers, which receives their events."""
+    """The owner of visualization managers, which receives their events."""
 
     def edited(self, manager: VisualizationManager) -> None:
         """Handle a change of undo, redo or the unsaved state."""
 
     def robot_changed(self) -> None:
-        """Handle another robot of a display."""
+        """Handle a change of the robot that a display shows."""
 
     def fixed_frame_changed(self, manager: VisualizationManager) -> None:
-        """Handle another Fixed Frame."""
+        """Handle a change of the Fixed Frame."""
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Handle the end of a manager."""
+        """Handle the closing of a manager."""
 
 
 class VisualizationManager:
@@ -59,17 +59,17 @@ class VisualizationManager:
 
     Args:
         context: the viewer's node, files and pages.
-        config: displays, options and view.
+        config: the configuration with displays, options and view.
         owner: the owner, which receives events.
 
     Attributes:
         context: the viewer's node, files and pages.
-        pages: the pages that see it.
-        view: the first view of a page that opens, whichever others have now.
-        shows_whole_robot: whether no user chose the view: pages then fit the camera to the robot.
-        config: the configuration now.
-        opened: counts the configurations that it has had.
-        frames: the frames now.
+        pages: the pages that show the configuration.
+        view: the initial view of a page that opens, independent of the current views of other pages.
+        shows_whole_robot: whether no user has chosen a view; pages then fit the camera to the robot.
+        config: the current configuration.
+        opened: the number of configurations opened so far.
+        frames: the current frames.
         time: whether time is paused, and what it is synchronized with.
         tree: the displays, and the operations on them.
         history: the edits.
@@ -98,10 +98,10 @@ class VisualizationManager:
         self.tree = DisplayTree(config, self, self.history, rearranged=self._rearranged)
         self.fading_changed()
 
-    # --- life --------------------------------------------------------------------------------------------------
+    # --- lifecycle ---------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Subscribe, and start."""
+        """Subscribe to transforms and start the displays."""
         self._warn()
         self._stream.start()
         self.tree.start()
@@ -109,7 +109,7 @@ class VisualizationManager:
         self._synchronize()
 
     def close(self) -> None:
-        """Stop for good."""
+        """Stop permanently."""
         self._stream.close()
         self.tree.stop()
 
@@ -135,7 +135,7 @@ class VisualizationManager:
             self.context.report(warning)
 
     def _read_options(self) -> None:
-        """Read the Fixed Frame and the Frame Rate."""
+        """Apply the Fixed Frame and the Frame Rate of the Global Options."""
         options = self.config.options
         options.offer_frames(lambda: sorted(self.frames.names))
         self._stream.fixed_frame, self._stream.rate = options.text(_FIXED_FRAME), options.number(_FRAME_RATE)
@@ -143,11 +143,11 @@ class VisualizationManager:
     # --- pages -------------------------------------------------------------------------------------------------
 
     def publish(self, message: ServerMessage) -> None:
-        """Send a message to the pages that see this configuration."""
+        """Send a message to the pages that show this configuration."""
         self.pages.publish(message)
 
     def opening(self) -> tuple[list[ServerMessage], FrameTable, list[Payload]]:
-        """Return the first messages for a new page: messages, then the frame table, then binary frames."""
+        """Return the initial messages for a new page: messages, then the frame table, then binary frames."""
         self._stream.refresh()
         table, transforms = self._stream.opening
         messages: list[ServerMessage] = [self.tree_message()]
@@ -157,7 +157,7 @@ class VisualizationManager:
         return messages, table, [*([transforms] if transforms else []), *data]
 
     def tree_message(self) -> Tree:
-        """Return the Displays panel, for pages."""
+        """Return the message with the content of the Displays panel, for pages."""
         return Tree(
             global_options=self.config.options.rows(),
             global_status=self._global_status,
@@ -169,11 +169,11 @@ class VisualizationManager:
 
     @property
     def displays(self) -> list[ViewerDisplay]:
-        """Every display, each group before what is in it."""
+        """Every display, each group before its contents."""
         return self.tree.displays
 
     def display(self, identity: str) -> ViewerDisplay | None:
-        """Return the display with an id."""
+        """Return the display with an ID, or None."""
         return self.tree.find(identity)
 
     def robot_models(self) -> list[RobotModelDisplay]:
@@ -181,7 +181,7 @@ class VisualizationManager:
         return [display for display in self.displays if isinstance(display, RobotModelDisplay)]
 
     def store(self, owner: str) -> PropertyStore:
-        """Return the properties of a display, or the Global Options.
+        """Return the properties of a display or the Global Options.
 
         Raises:
             KeyError: there is no such display.
@@ -194,11 +194,11 @@ class VisualizationManager:
         return display.properties
 
     def set_property(self, page: Page, identity: str, value: object) -> None:
-        """Set a property for a page; the answer to a refused value is the present one."""
+        """Set a property for a page; if the value is refused, reply with the current value."""
         owner, _, rest = identity.partition("/")
         display = self.display(owner)
         if display is None and owner != GLOBAL:
-            return  # it was removed meanwhile
+            return  # the display has been removed meanwhile
         if display is not None and rest == "Enabled":
             if not isinstance(value, bool):
                 page.send(PropertyChanged(identity, display.config.checked))
@@ -208,7 +208,7 @@ class VisualizationManager:
         store = self.store(owner)
         path = store.find(identity)
         if path is None:
-            return  # rows of a robot or frame that is gone
+            return  # a row of a robot or frame that was removed
         before = store.get(*path)
         try:
             self._edit(identity, path, lambda: self._set(display, path, value))
@@ -223,7 +223,7 @@ class VisualizationManager:
             self._set_option(path[0], value)
 
     def _edit(self, identity: str, path: Path, change: Callable[[], None]) -> None:
-        """Change a property with undo; a drag is a single edit."""
+        """Change a property with undo; the steps of a drag are a single edit."""
         if self.history.is_at(identity):
             change()
             self.history.prolong()
@@ -240,7 +240,7 @@ class VisualizationManager:
         self._edit(self.config.options.identity(path), path, lambda: self._set_option(_FIXED_FRAME, frame))
 
     def _swap_values(self, owner: str, memories: list[Memory]) -> list[Memory]:
-        """Restore the file's entries of some properties, including missing keys; returns the present ones."""
+        """Restore the file's entries of some properties, including missing keys, and return the replaced ones."""
         now = self.store(owner).memories(memories)
         self._recall(owner, memories)
         return now
@@ -261,13 +261,13 @@ class VisualizationManager:
                     display.set_property(path, value)
 
     def edited(self) -> None:
-        """Record an edit of the file that undo does not cover."""
+        """Record a change to the file that undo does not cover."""
         self.history.touch()
 
     # --- time --------------------------------------------------------------------------------------------------
 
     def set_time(self, *, paused: bool, mode: SyncMode, source: str) -> None:
-        """Pause or resume, and follow the messages of a display, or none."""
+        """Pause or resume, and set the synchronization mode and the source display."""
         self.time.set(paused=paused, mode=mode, source=source)
         if write_synchronization(self.config.document, Synchronization(mode, source)):
             self.edited()
@@ -276,7 +276,7 @@ class VisualizationManager:
             display.time_changed()
 
     def reset_time(self) -> None:
-        """Reset time: displays forget messages, and moving frames until they are published again."""
+        """Reset time: displays discard messages, and moving frames are unknown until they are published again."""
         self.time.reset()
         self.context.transforms.forget()
         self._stream.forget()
@@ -284,7 +284,7 @@ class VisualizationManager:
             display.time_reset()
 
     def _synchronize(self) -> None:
-        """Set time to the file's synchronization, not paused."""
+        """Apply the file's time synchronization, not paused."""
         synchronization = read_synchronization(self.config.document)
         self.set_time(paused=False, mode=synchronization.mode, source=synchronization.source)
 
@@ -348,7 +348,7 @@ class VisualizationManager:
             self.publish(DisplayStatus(GLOBAL, row.level, [row]))
 
     def robot_changed(self, gone: set[str]) -> None:
-        """Handle a display's new robot; `gone` are the frames that only the former one had."""
+        """Handle a display's new robot; `gone` contains the frames that only the former robot had."""
         self._stream.robot_changed(gone - self._own_frames())
         self._owner.robot_changed()
 
@@ -356,7 +356,7 @@ class VisualizationManager:
         return frozenset(link.frame for robot in self.robot_models() for link in robot.scene.links)
 
     def fading_changed(self) -> None:
-        """Handle another Frame Timeout, or a display of frames that appeared or disappeared."""
+        """Handle a change of the Frame Timeout, or a display of frames that appeared or disappeared."""
         shown = (display for display in self.displays if isinstance(display, TfDisplay) and display.enabled)
         self._stream.fade_time = min((display.properties.number(FRAME_TIMEOUT) for display in shown), default=None)
 
@@ -369,7 +369,7 @@ MOST_LINGERING = 8
 
 
 class Managers:
-    """The manager that all share, and those of single pages, which begin with a copy of the shared configuration.
+    """The manager that pages share, and managers of single pages, which begin with a copy of the shared configuration.
 
     Args:
         context: the viewer's node, files and pages.
@@ -384,7 +384,7 @@ class Managers:
         self._ends: dict[str, asyncio.TimerHandle] = {}
 
     def all(self) -> list[VisualizationManager]:
-        """Every manager, the shared one first."""
+        """Return all managers, the shared one first."""
         return [self.shared, *self._own.values()]
 
     def of(self, page: Page) -> VisualizationManager:
@@ -392,7 +392,7 @@ class Managers:
         return self._own.get(page.own, self.shared)
 
     def enter(self, page: Page) -> VisualizationManager:
-        """Return the manager for a page that opens; created if the page is the first to ask for it."""
+        """Return the manager for a page that opens, creating it if the page is the first to ask for it."""
         if page.own:
             end = self._ends.pop(page.own, None)
             if end is not None:
@@ -403,7 +403,7 @@ class Managers:
         return self.of(page)
 
     def leave(self, page: Page) -> None:
-        """Handle the end of a page; a manager without pages is closed after a while."""
+        """Handle the closing of a page; a manager without pages is closed after a while."""
         manager = self.of(page)
         manager.pages.discard(page)
         if manager is not self.shared and not len(manager.pages):

@@ -1,4 +1,4 @@
-"""The base of all displays: a check box, properties, status rows, content, and the events that it handles."""
+"""The base class of all displays: check box, properties, status rows, content and event methods."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ from linkwright.rviz.frames.stream import FrameView, TimeControl
 
 
 class DisplayHost(Protocol):
-    """A visualization, as its displays see it.
+    """The visualization as its displays see it.
 
     Attributes:
         context: the viewer's node, files and pages.
-        pages: the pages that see the display.
-        frames: the frames now.
+        pages: the pages that show the display.
+        frames: the current frames.
         time: whether time is paused, and what it is synchronized with.
     """
 
@@ -45,10 +45,10 @@ class DisplayHost(Protocol):
     time: TimeControl
 
     def robot_changed(self, gone: set[str]) -> None:
-        """Handle a display's new robot; `gone` are the frames that only the former one had."""
+        """Handle a display's new robot; `gone` contains the frames that only the former robot had."""
 
     def fading_changed(self) -> None:
-        """Handle another time after which a display hides frames, or a change of its check box."""
+        """Handle a change of a display's frame timeout or of its check box."""
 
 
 Pose = NDArray[np.float64]
@@ -70,7 +70,7 @@ class ViewerDisplay:
 
     Args:
         host: the visualization that it is part of.
-        identity: its id in the page, stable for its life.
+        identity: its id in the page, stable for its lifetime.
         config: its entry of the .rviz file.
     """
 
@@ -106,12 +106,12 @@ class ViewerDisplay:
 
     @classmethod
     def topic_value(cls, topic: str) -> str:
-        """Return the value of the property `TOPIC` that shows a topic."""
+        """Return the value of the property `TOPIC` with which the display shows a topic."""
         return topic
 
     @property
     def enabled(self) -> bool:
-        """Whether it is drawn: its check box and those of the groups around it are on."""
+        """Whether the display is drawn: its check box and those of the groups around it are on."""
         return self.config.enabled
 
     def schema(self) -> Schema:
@@ -119,7 +119,7 @@ class ViewerDisplay:
         return self.SCHEMA
 
     def row(self) -> Display:
-        """Return the display's row for pages."""
+        """Return the display's row for the Displays panel of pages."""
         return Display(
             id=self.id,
             cls=self.config.cls,
@@ -154,7 +154,7 @@ class ViewerDisplay:
         """Restore the file's values of some properties, send them to all pages, and apply them."""
         for path in self.properties.recall(memories):
             self.changed(path)
-        self.properties.recall(memories)  # `changed` may have set further properties, which are recalled too
+        self.properties.recall(memories)  # `changed` may have set further properties, so recall those too
         self.recalled()
         self.publish_properties()
 
@@ -167,7 +167,7 @@ class ViewerDisplay:
         self.pages.publish(DisplayProperties(self.id, self.properties.rows()))
 
     def set_status(self, rows: list[StatusRow]) -> None:
-        """Show status rows, none while the display is off; pages receive them only if they differ."""
+        """Show status rows; none while the display is off. Pages receive them only if they differ."""
         if not self.enabled:
             rows = []
         if rows != self.status:
@@ -178,42 +178,42 @@ class ViewerDisplay:
         return [FIXED_FRAME, *sorted(self.host.frames.names)]
 
     def start(self) -> None:
-        """Start: subscribe, read files."""
+        """Start the display: subscribe and read files."""
 
     def stop(self) -> None:
-        """Stop for good."""
+        """Stop the display permanently."""
 
     def changed(self, path: Path) -> None:
         """Handle a property's new value."""
 
     def recalled(self) -> None:
-        """Update derived state: values were restored and `changed` was called for each."""
+        """Update derived state after values were restored and `changed` was called for each of them."""
 
     def enabled_changed(self) -> None:
-        """Handle a change of the check box of the display, or of a group around it."""
+        """Handle a change of the check box of the display or of a group that contains it."""
         self.frames_changed()
 
     def arranged(self, displays: Sequence[ViewerDisplay]) -> None:
-        """Handle a new arrangement: displays were added, removed, moved or renamed; each group precedes its content."""
+        """Handle displays that were added, removed, moved or renamed; each group precedes its contents."""
 
     def frames_changed(self) -> None:
-        """Handle frames that appeared, disappeared, or gained or lost their transform; or another Fixed Frame."""
+        """Handle changed frames: they appeared, disappeared, gained or lost a transform, or the Fixed Frame changed."""
 
     def receive(self, message: Any) -> None:
         """Handle a page's message for this display, such as the result of loading a mesh or an action on a marker."""
 
     def time_changed(self) -> None:
-        """Handle a pause, a resume, or another source of time."""
+        """Handle a pause, a resume, or a change of the time source."""
 
     def time_reset(self) -> None:
-        """Handle a reset of time: forget earlier messages."""
+        """Handle a reset of time by discarding earlier messages."""
 
     def messages(self) -> list[ServerMessage]:
         """Return messages for a page that opens now, in addition to the display's row."""
         return []
 
     def data(self) -> list[Payload]:
-        """Return content for a page that opens now, so that it draws the same as the others."""
+        """Return content for a page that opens now, which makes it draw the same as the other pages."""
         return []
 
 
@@ -235,19 +235,19 @@ class DataDisplay(ViewerDisplay):
         stamp_ns: int = 0,
         shrink: Shrink | None = None,
     ) -> None:
-        """Send pages content to draw; see `pack_data`. It is stored for pages that open later.
+        """Send content for pages to draw, see `pack_data`; it is stored for pages that open later.
 
-        With `shrink` pages with a slow line receive as much of it as the line carries.
+        With `shrink`, pages with a slow connection receive as much of it as the connection can carry.
         """
         pack = partial(pack_data, self.id, key=key, frame=frame, pose=pose, stamp=stamp_ns / 1e9)
         waits_under = f"data {self.id} {key}"
         packed = pack(content) if shrink is None else ScaledData(waits_under, content, shrink, pack)
         self.pages.send_data(waits_under, packed)
-        self._replaced(key)  # after the new content has its place in the queues
+        self._replaced(key)  # after the new content has been queued
         self._data[key] = packed
 
     def forget(self, key: str | None = None) -> None:
-        """Remove the data that was sent under a key from pages, or all data."""
+        """Remove the data that was sent under a key, or all data, from the pages."""
         for data_key in self._data if key is None else (key,):
             self._replaced(data_key)
         if key is None:
@@ -257,14 +257,14 @@ class DataDisplay(ViewerDisplay):
         self.pages.publish(DisplayForgotten(self.id, key))
 
     def set_status_row(self, name: str, level: StatusLevel, text: str) -> None:
-        """Set a status row; a phrase is shown in the language of each page."""
+        """Set a status row; a `Phrase` is shown in the language of each page."""
         row = StatusRow(name, level, text)
         if self._rows.get(name) != row:
             self._rows[name] = row
             self.set_status(list(self._rows.values()))
 
     def delete_status_row(self, name: str | None = None) -> None:
-        """Remove a status row, or all."""
+        """Remove a status row, or all rows."""
         if name is None:
             self._rows.clear()
             self.set_status([])
@@ -272,7 +272,7 @@ class DataDisplay(ViewerDisplay):
             self.set_status(list(self._rows.values()))
 
     def data(self) -> list[Payload]:
-        """Return the content drawn now."""
+        """Return the content that is currently drawn."""
         return list(self._data.values())
 
     def _replaced(self, key: str) -> None:

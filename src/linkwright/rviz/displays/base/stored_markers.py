@@ -1,4 +1,4 @@
-"""Displays that are drawn as markers: pages receive new and changed markers, and the ids of removed ones."""
+"""Displays drawn as markers: pages receive new and changed markers, and the IDs of removed markers."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class StoredMarkersDisplay(TopicDisplay):
         self._meshes = MeshIndex(host.context.finder)
 
     def stop(self) -> None:
-        """Stop listening, and withdraw the files that markers named from pages."""
+        """Stop listening, and withdraw from pages the files that markers referred to."""
         super().stop()
         self.context.meshes.replace(self.id, {})
 
@@ -43,6 +43,6 @@ class StoredMarkersDisplay(TopicDisplay):
             )
 
     def show_markers(self) -> None:
-        """Send the changes: all of a message at once."""
+        """Send the changes, with all changes of a message together."""
         self.context.meshes.replace(self.id, self._meshes.folders)
         self.pages.send_data(self._store.key, self._store)

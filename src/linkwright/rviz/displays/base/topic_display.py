@@ -1,4 +1,4 @@
-"""Displays of a topic's messages: the subscription, waiting for transforms, the data for pages."""
+"""Displays that show a topic's messages: subscription, waiting for transforms, and data for pages."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class SideTopic:
         self._held: deque[Any] = deque()
 
     def listen(self, topic: str, qos: QoSProfile) -> Phrase | None:
-        """Subscribe to a topic instead of the former one; returns RViz's text for the failure, or None."""
+        """Subscribe to a topic instead of the former one; return RViz's error text, or None on success."""
         self.close()
         self._held = deque(maxlen=max(1, qos.depth))
         try:
@@ -53,7 +53,7 @@ class SideTopic:
     def close(self) -> None:
         """Stop listening."""
         if self._subscription is not None:
-            with suppress(ValueError):  # the node may have been destroyed before
+            with suppress(ValueError):  # the node may already have been destroyed
                 self._host.context.node.destroy_subscription(self._subscription)
             self._subscription = None
         self._held.clear()
@@ -103,13 +103,13 @@ _MOST_OTHERS = 3
 
 
 class TopicDisplay(DataDisplay, ABC):
-    """A display of the messages of one type on one topic.
+    """A display of messages of one type on one topic.
 
-    A subclass sets `CLASS`, `MESSAGE` and its properties, among them a `topic_spec`, and overrides `process_message`.
-    It subscribes only while it is enabled, as in RViz.
+    A subclass sets `CLASS`, `MESSAGE` and its properties, which include a `topic_spec`, and overrides
+    `process_message`. The display subscribes only while it is enabled, as in RViz.
 
     Attributes:
-        last: the message shown now, to show it again when a property changes.
+        last: the message that is currently shown, to show it again when a property changes.
     """
 
     MESSAGE: ClassVar[str] = ""
@@ -153,11 +153,11 @@ class TopicDisplay(DataDisplay, ABC):
 
         Args:
             message: a message of the type `MESSAGE`; it must not be changed.
-            pose: the pose of the frame in its header, at its time; None when the display is not `TRANSFORMED`.
+            pose: the pose of the message's frame at the message's time; None if the display is not `TRANSFORMED`.
         """
 
     def reset(self) -> None:
-        """Forget all content: the topic or the Fixed Frame has changed, or time was reset."""
+        """Discard all content, because the topic or the Fixed Frame has changed or time was reset."""
         self.forget()
 
     def transforms_received(self) -> None:
@@ -170,11 +170,11 @@ class TopicDisplay(DataDisplay, ABC):
         return message.header.frame_id, stamp.nanoseconds
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return the type, topic and quality of service to subscribe with; an empty topic means no subscription."""
+        """Return the type, the topic and the QoS of the subscription; an empty topic means no subscription."""
         return self.MESSAGE, self.properties.text(TOPIC).strip(), qos_of(self.properties)
 
     def most_waiting(self) -> int:
-        """Return the number of messages that may wait for their transforms."""
+        """Return the maximum number of messages that may wait for their transforms."""
         return int(self.properties.number(TOPIC, FILTER_SIZE))
 
     # --- what subclasses call ----------------------------------------------------------------------------------
@@ -184,7 +184,7 @@ class TopicDisplay(DataDisplay, ABC):
         if self.last is not None:
             self._offer(self.last)
 
-    # --- life --------------------------------------------------------------------------------------------------
+    # --- lifecycle ---------------------------------------------------------------------------------------------
 
     def start(self) -> None:
         """Subscribe, if the display is enabled."""
@@ -197,7 +197,7 @@ class TopicDisplay(DataDisplay, ABC):
         self._unsubscribe()
 
     def changed(self, path: Path) -> None:
-        """Subscribe to another topic, or with another quality of service."""
+        """Subscribe to another topic, or with another QoS."""
         if path[0] == TOPIC and path != (TOPIC, FILTER_SIZE):
             self._restart()
 
@@ -206,7 +206,7 @@ class TopicDisplay(DataDisplay, ABC):
         self._restart()
 
     def frames_changed(self) -> None:
-        """Show the last message in the other Fixed Frame."""
+        """Show the last message in the new Fixed Frame."""
         if self.fixed_frame_changed():
             self._waiting.clear()
             self.reset()
@@ -246,7 +246,7 @@ class TopicDisplay(DataDisplay, ABC):
         if not topic:
             self.set_status_row(self.TOPIC_ROW, "error", phrase("Error subscribing: Empty topic name"))
             return
-        from linkwright.graph import SubscriptionEventCallbacks  # here, because the view of a robot has no topics
+        from linkwright.graph import SubscriptionEventCallbacks  # a robot's view needs no topics
 
         try:
             self._subscription = self.context.node.create_subscription(
@@ -270,7 +270,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._report_timer.cancel()
             self._report_timer = None
         if self._subscription is not None:
-            with suppress(ValueError):  # the node may have been destroyed before
+            with suppress(ValueError):  # the node may already have been destroyed
                 self.context.node.destroy_subscription(self._subscription)
             self._subscription = None
         if self._release is not None:
@@ -298,7 +298,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._report_count()
 
     def _report_count(self) -> None:
-        """Show the number of messages, or why there are none; repeated while there are none."""
+        """Show the number of messages, or the reason why there are none; repeat it while there are none."""
         if self._count > 0:
             seconds = time.monotonic() - self._since
             text = phrase("{count} messages received", count=self._count)
@@ -329,7 +329,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._report_timer = asyncio.get_running_loop().call_later(_COUNT_PERIOD, report)
 
     def _silence(self) -> Phrase:
-        """Return the reason why no messages arrive, as far as the graph knows, and topics of the same type."""
+        """Return the reason why no messages arrive, as far as the graph shows, and topics of the same type."""
         message, topic, _ = self.subscription()
         publishers = self.context.published.publishers(topic)
         types = {topic_type for _, topic_type in publishers}
@@ -339,7 +339,7 @@ class TopicDisplay(DataDisplay, ABC):
             return phrase("no message arrived yet from {nodes}", nodes=joined(sorted({name for name, _ in publishers})))
         there = self.context.published.of_type(message)
         if there:
-            from difflib import SequenceMatcher  # here, because most topics have a publisher
+            from difflib import SequenceMatcher  # imported here because most topics have a publisher
 
             there = sorted(there, key=lambda name: -SequenceMatcher(None, topic, name).ratio())[:_MOST_OTHERS]
             return phrase(
@@ -397,7 +397,7 @@ class TopicDisplay(DataDisplay, ABC):
         return True
 
     def _could_not_place(self, reason: Phrase, stamp_ns: int, *, is_late: bool) -> None:
-        """Report a message without a transform; if it is only late, after a while without placed messages."""
+        """Report a message without a transform; if it is only late, report it after a while without placed messages."""
         if not is_late:
             self.set_status_row(TRANSFORM, "error", reason)
             return
@@ -435,7 +435,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._late = None
 
     def _process(self, message: Any, pose: Pose | None) -> None:
-        """Show a message. An unexpected failure must not stop the following ones."""
+        """Show a message; an unexpected error must not prevent the next messages from being shown."""
         self.last = message
         try:
             self.process_message(message, pose)
@@ -467,9 +467,10 @@ class _Shown:
 
 
 class RecentDisplay(TopicDisplay):
-    """Shows the content of each of the last messages, at its frame's pose at the message's time.
+    """Shows the content of each of the most recent messages, at its frame's pose at the message's time.
 
-    A subclass names the property with their number in `LENGTH` (0 for all of them); without one it shows one message.
+    A subclass sets `LENGTH` to the property with the number of messages, where 0 means all messages; without it the
+    display shows one message.
     """
 
     LENGTH: ClassVar[Path | None] = None
@@ -487,7 +488,7 @@ class RecentDisplay(TopicDisplay):
         """Return the content of a message, in the frame of `frame_of`, or None to ignore it."""
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show a message, and drop the oldest one."""
+        """Show a message and remove the oldest one."""
         assert pose is not None
         content = self.content(message)
         if content is None:
@@ -502,7 +503,7 @@ class RecentDisplay(TopicDisplay):
         self._send(self._shown[-1])
 
     def changed(self, path: Path) -> None:
-        """Show as many messages as the property sets."""
+        """Apply the new number of messages to show."""
         super().changed(path)
         if path == self.LENGTH:
             length = self._length()
@@ -513,21 +514,21 @@ class RecentDisplay(TopicDisplay):
                 self._send(shown)
 
     def reset(self) -> None:
-        """Forget all messages."""
+        """Discard all messages."""
         self._shown.clear()
         self._number = 0
         super().reset()
 
     def refuse(self, text: str) -> None:
-        """Show the problem of the last message."""
+        """Show in the status why the last message cannot be drawn."""
         self.set_status_row(_MESSAGE, "error", text)
 
     def accept(self) -> None:
-        """Clear the problem of the previous message."""
+        """Clear the error of the previous message from the status."""
         self.delete_status_row(_MESSAGE)
 
     def is_finite(self, *numbers: ArrayLike) -> bool:
-        """Return whether all numbers are finite, and show in the status if they are not."""
+        """Return whether all numbers are finite; if not, report it in the status."""
         if all(np.isfinite(number).all() for number in numbers):
             self.accept()
             return True

@@ -1,4 +1,4 @@
-"""The base of MoveIt's displays: a robot that can be drawn in any state, and markers in groups."""
+"""The base of MoveIt's displays: a robot drawn in any state, and markers in groups."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ STATE = "State"
 
 
 class MoveItDisplay(StoredMarkersDisplay):
-    """A display of MoveIt. A subclass draws in `draw`, which is called when the robot or a property changes."""
+    """A MoveIt display. A subclass draws in `draw`, which is called when the robot or a property changes."""
 
     DRAWN_AS = "rviz_default_plugins/MarkerArray"
 
@@ -41,7 +41,7 @@ class MoveItDisplay(StoredMarkersDisplay):
     # --- what subclasses override ------------------------------------------------------------------------------
 
     def draw(self) -> None:
-        """Draw all markers again with `put`, and call `drawn`."""
+        """Draw all markers again: call `put` for each group, then `drawn`."""
 
     def description_topic(self) -> str:
         """Return the topic of the robot's description."""
@@ -61,7 +61,7 @@ class MoveItDisplay(StoredMarkersDisplay):
         self._groups[group] = now
 
     def drawn(self) -> None:
-        """Send the markers of `put`, and show in the status which frames cannot be placed."""
+        """Send the markers passed to `put`, and show in the status which frames have no known pose."""
         self.show_markers()
         self._report_frames()
 
@@ -76,14 +76,14 @@ class MoveItDisplay(StoredMarkersDisplay):
         else:
             self.delete_status_row(_JOINTS)
 
-    # --- life --------------------------------------------------------------------------------------------------
+    # --- lifecycle ---------------------------------------------------------------------------------------------
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
         """Return the type and topic to subscribe to."""
         return self.MESSAGE, self.properties.text(*self.TOPIC).strip(), QoSProfile(depth=10)
 
     def start(self) -> None:
-        """Subscribe to the description, too."""
+        """Also subscribe to the description."""
         super().start()
         self._follow()
 
@@ -93,12 +93,12 @@ class MoveItDisplay(StoredMarkersDisplay):
         super().stop()
 
     def enabled_changed(self) -> None:
-        """Subscribe only while it is enabled."""
+        """Subscribe only while the display is enabled."""
         super().enabled_changed()
         self._follow()
 
     def changed(self, path: Path) -> None:
-        """Subscribe to another topic, follow another description, or draw again."""
+        """Subscribe to another topic, follow another description, or redraw."""
         if path == self.TOPIC:
             self._restart()
             self._follow()
@@ -112,7 +112,7 @@ class MoveItDisplay(StoredMarkersDisplay):
         self.draw()
 
     def frames_changed(self) -> None:
-        """Show in the status which frames cannot be placed."""
+        """Show in the status which frames have no known pose."""
         self._report_frames()
 
     def time_changed(self) -> None:
@@ -121,7 +121,7 @@ class MoveItDisplay(StoredMarkersDisplay):
         super().time_changed()
 
     def reset(self) -> None:
-        """Forget all markers."""
+        """Discard all markers."""
         self._groups.clear()
         self._store.clear()
         self.show_markers()
@@ -165,7 +165,7 @@ class MoveItDisplay(StoredMarkersDisplay):
         self.draw()
 
     def robot_changed(self) -> None:
-        """Handle another robot; `draw` is called later."""
+        """Handle a change of the robot; `draw` is called later."""
 
     def _report_frames(self) -> None:
         frames = {shape.frame for shapes in self._groups.values() for shape in shapes.values()}

@@ -31,9 +31,9 @@ _REQUEST_SPEC = PropertySpec(
 
 
 class MotionPlanningDisplay(PlanningSceneDisplay):
-    """The planning scene, the motions that are planned in it, and the first and last state of the last one.
+    """The planning scene, the planned motions, and the first and last states of the last motion.
 
-    It does not plan: properties for planning requests are kept in the file and have no rows.
+    The display does not plan: properties for planning requests are kept in the file and have no rows.
     """
 
     CLASS = "moveit_rviz_plugin/MotionPlanning"
@@ -44,12 +44,12 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         self._motions = SideTopic(host, "moveit_msgs/msg/DisplayTrajectory", self._player.play)
 
     def schema(self) -> Schema:
-        """Return the properties of the scene and of motions."""
+        """Return the properties for the scene and for motions."""
         path = PropertySpec(PATH, "group", description="The motions.", children=path_specs(self.link_names))
         return (*super().schema(), _REQUEST_SPEC, path)
 
     def start(self) -> None:
-        """Subscribe to motions, too."""
+        """Also subscribe to motions."""
         super().start()
         self._follow_motions()
 
@@ -60,12 +60,12 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         super().stop()
 
     def enabled_changed(self) -> None:
-        """Subscribe only while it is enabled."""
+        """Subscribe only while the display is enabled."""
         super().enabled_changed()
         self._follow_motions()
 
     def changed(self, path: Path) -> None:
-        """Subscribe to other motions; restart the motion if it loops from now on."""
+        """Subscribe to other motions, or restart the motion if it now loops."""
         if path == (PATH, TRAJECTORY_TOPIC):
             self._player.forget()
             self._follow_motions()
@@ -78,12 +78,12 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         self._motions.resume()
 
     def robot_changed(self) -> None:
-        """Play the motion of this robot."""
+        """Play the motion again with the new robot."""
         super().robot_changed()
         self._player.begin_again()
 
     def reset(self) -> None:
-        """Forget the scene and the motion."""
+        """Discard the scene and the motion."""
         self._player.forget()
         super().reset()
 

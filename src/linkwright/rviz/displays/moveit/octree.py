@@ -1,8 +1,8 @@
-"""Octrees as OctoMap's library writes them into octomap_msgs/msg/Octomap.
+"""Reads octrees as OctoMap's library writes them to octomap_msgs/msg/Octomap.
 
-Both forms go down from the root, a node before its children, and the first child first. The binary form has two bits
-for each child of an inner node: free, occupied, or an inner node itself. The full form has a float with the log-odds
-that a node is occupied, further data of the tree's class, and a byte with a bit for each child that exists.
+Both forms store the tree from the root, each node before its children and the children in order. The binary form has
+two bits for each child of an inner node: free, occupied, or an inner node. The full form has a float with the log-odds
+that a node is occupied, further data of the tree's class, and a byte with one bit for each existing child.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ MOST_CELLS = 1_000_000
 
 
 class BadOctreeError(ValueError):
-    """The data is not an octree; the text gives the reason."""
+    """Raised when the data is not an octree; the text gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,9 +40,9 @@ class Cells:
     """The leaves of a tree.
 
     Attributes:
-        centers: metres, shape (N, 3).
+        centers: the centres of the cells, metres, shape (N, 3).
         sizes: edge lengths, metres, shape (N,).
-        probabilities: the probabilities that they are occupied, shape (N,).
+        probabilities: the probability that each cell is occupied, shape (N,).
     """
 
     centers: NDArray[np.float64]
@@ -61,7 +61,7 @@ def read_octree(*, data: bytes, binary: bool, kind: str, resolution: float) -> C
         data: the data of the message.
         binary: whether it is in the binary form.
         kind: the class of the tree; its `id` in the message.
-        resolution: metres.
+        resolution: the edge length of the smallest cells, metres.
 
     Raises:
         BadOctreeError: the data ends too early or too late, or the class is unknown.
@@ -99,7 +99,7 @@ def _read_binary(data: bytes, resolution: float) -> Cells:
 
 
 def _leaves_of(inner: NDArray[np.int64], bits: NDArray[np.int64], resolution: float) -> Cells:
-    """Return the children of inner nodes, shape (N, 4), that are leaves, from the two bits of each."""
+    """Return the leaves among the children of inner nodes, shape (N, 4), as given by two bits each."""
     states = bits[:, None] >> 2 * np.arange(8) & 3
     parents, children = np.nonzero((states == _FREE) | (states == _OCCUPIED))
     if len(parents) > MOST_CELLS:
@@ -156,7 +156,7 @@ def _child(node: _Node, child: int) -> _Node:
 
 
 class _Leaves:
-    """The leaves of a tree while it is read."""
+    """Collects the leaves of a tree while it is read."""
 
     def __init__(self) -> None:
         self._nodes: list[_Node] = []

@@ -60,12 +60,12 @@ class PlanningSceneDisplay(MoveItDisplay):
         return (NAMESPACE_SPEC, DESCRIPTION_SPEC, SCENE_TOPIC_SPEC, GEOMETRY_SPEC, scene_robot_spec(self.link_names))
 
     def description_topic(self) -> str:
-        """Return the topic in the namespace of move_group, if there is one."""
+        """Return the description topic in the namespace of move_group, if there is one."""
         name, namespace = super().description_topic(), self.properties.text(NAMESPACE).strip("/ ")
         return f"/{namespace}/{name}" if namespace and name and not name.startswith("/") else name
 
     def start(self) -> None:
-        """Request the scene, too."""
+        """Also request the scene."""
         super().start()
         self._ask()
 
@@ -75,12 +75,12 @@ class PlanningSceneDisplay(MoveItDisplay):
         super().stop()
 
     def enabled_changed(self) -> None:
-        """Request the scene again, which was forgotten."""
+        """Subscribe only while enabled; when enabled again, request the scene, which was discarded."""
         super().enabled_changed()
         self._ask()
 
     def changed(self, path: Path) -> None:
-        """Request the scene of another move_group."""
+        """Request the scene from another move_group."""
         if path == (NAMESPACE,):
             self._restart()
             self._follow()
@@ -90,25 +90,25 @@ class PlanningSceneDisplay(MoveItDisplay):
             self._ask()
 
     def time_reset(self) -> None:
-        """Forget the scene, and request it."""
+        """Discard the scene and request it again."""
         super().time_reset()
         self._ask()
 
     def reset(self) -> None:
-        """Forget the scene."""
+        """Discard the scene."""
         self.scene = Scene()
         self._state = None
         self._reported.clear()
         super().reset()
 
     def robot_changed(self) -> None:
-        """Apply the last state, which may have arrived before the description."""
+        """Apply the last state again, because it may have arrived before the description."""
         self.scene.state = JointPositions()
         if self._state is not None:
             self._apply_state(self._state)
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Apply changes of the scene, or another scene."""
+        """Apply a full scene or changes to it."""
         before = self.scene.name
         self.scene.apply(message)
         if self.scene.name != before:
@@ -194,7 +194,7 @@ class PlanningSceneDisplay(MoveItDisplay):
     # --- asking for the whole scene ----------------------------------------------------------------------------
 
     def _ask(self) -> None:
-        """Request the scene from move_group now or as soon as it is available."""
+        """Request the scene from move_group immediately or as soon as it is available."""
         self._leave()
         if not self.enabled:
             return
@@ -230,7 +230,7 @@ class PlanningSceneDisplay(MoveItDisplay):
             self._due.cancel()
             self._due = None
         if self._client is not None:
-            with suppress(ValueError):  # the node may have been destroyed before
+            with suppress(ValueError):  # the node may already have been destroyed
                 self.context.node.destroy_client(self._client)
             self._client = None
 

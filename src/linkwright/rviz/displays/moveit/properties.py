@@ -1,4 +1,4 @@
-"""The properties that displays of MoveIt share. Names and defaults are those of moveit_rviz_plugin."""
+"""The properties shared by MoveIt's displays. Names and defaults are those of moveit_rviz_plugin."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TRAJECTORY_TOPIC = "Trajectory Topic"
 
 
 def fraction(name: str, default: float, description: str) -> PropertySpec:
-    """Return the property of an opacity with a name of its own."""
+    """Return a property for an opacity, with the given name."""
     return PropertySpec(name, "float", default, description, minimum=0.0, maximum=1.0)
 
 
@@ -74,7 +74,7 @@ SHOWN = visibility("Show Robot Visual", "Show Robot Collision")
 
 
 def scene_robot_spec(links: Sequence[str]) -> PropertySpec:
-    """Return the group of the robot in the scene."""
+    """Return the property group of the robot in the scene."""
     return PropertySpec(
         ROBOT,
         "group",
@@ -115,7 +115,7 @@ def path_specs(links: Sequence[str]) -> tuple[PropertySpec, ...]:
 
 
 def links_spec(links: Sequence[str]) -> PropertySpec:
-    """Return the check boxes of links with shapes."""
+    """Return the check boxes of links that have shapes."""
     boxes = tuple(
         PropertySpec(name, "bool", True, "Draw this link.", children=(alpha("Opacity of this link."),))
         for name in links
@@ -126,20 +126,20 @@ def links_spec(links: Sequence[str]) -> PropertySpec:
 
 
 def rgb(text: str) -> tuple[float, float, float]:
-    """Return red, green and blue, from 0 to 1, of a colour such as ``#32e632``."""
+    """Return the RGB components, 0 to 1, of a colour such as ``#32e632``."""
     red, green, blue = (int(text[start : start + 2], 16) / 255.0 for start in (1, 3, 5))
     return red, green, blue
 
 
 def rgba(message: object) -> Color:
-    """Return the components of a std_msgs/msg/ColorRGBA, and alpha."""
+    """Return the RGBA components of a std_msgs/msg/ColorRGBA."""
     parts = (getattr(message, part) for part in "rgba")
     red, green, blue, opacity = (min(max(float(part), 0.0), 1.0) for part in parts)
     return red, green, blue, opacity
 
 
 def link_alphas(properties: PropertyStore, robot: PosableRobot, above: Path = ()) -> dict[str, float]:
-    """Return the opacity of each link, 0 for disabled ones."""
+    """Return the opacity of each link; 0 for disabled links."""
     found = {}
     for name in robot.shaped_links:
         if name != ALL_LINKS:
@@ -151,14 +151,14 @@ def link_alphas(properties: PropertyStore, robot: PosableRobot, above: Path = ()
 def look(
     properties: PropertyStore, robot: PosableRobot, namespace: str, above: Path = (), color: str | None = None
 ) -> Look:
-    """Return the look of a robot from the properties below a path.
+    """Return the appearance of a robot from the properties below a path.
 
     Args:
         properties: the display's properties.
         robot: the robot whose links have check boxes.
         namespace: the markers' namespace.
         above: the path of the group that has the properties.
-        color: the colour of all links, such as ``#963296``; None for their own.
+        color: the colour of all links, such as ``#963296``; None to use the links' own colours.
     """
     return Look(
         namespace,

@@ -1,4 +1,4 @@
-"""A robot as markers in a state from a message: its joint positions place its links, not tf."""
+"""A robot drawn as markers in the state of a message: joint positions place its links, and tf is not used."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ class JointPositions:
     """The positions of a robot's joints, and the pose of its root.
 
     Attributes:
-        values: rad or m, by joint.
+        values: joint positions in rad or m, by joint name.
         root_in_frame: the pose of the robot's root link in `frame`.
-        frame: the frame of `root_in_frame`; that of the root link where empty.
+        frame: the frame of `root_in_frame`; empty for the frame of the root link.
     """
 
     values: dict[str, float] = field(default_factory=dict)
@@ -39,23 +39,23 @@ class JointPositions:
     frame: str = ""
 
     def copy(self) -> JointPositions:
-        """Return a copy, for changes."""
+        """Return a copy that can be changed."""
         return JointPositions(dict(self.values), self.root_in_frame, self.frame)
 
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """Colours and opacity of a robot, and the links and shapes to draw.
+    """The appearance of a robot: colours, opacity, and the links and shapes to draw.
 
     Attributes:
         namespace: the markers' namespace.
-        visual: draw the visual geometry.
-        collision: draw the collision geometry.
-        alpha: opacity of all links.
-        alphas: opacity of some links, which is multiplied with that of all; links with 0 are left out.
-        color: red, green and blue of all links; None for their own.
-        links: the colours of some links.
-        only: the links that are drawn; None for all.
+        visual: whether to draw the visual geometry.
+        collision: whether to draw the collision geometry.
+        alpha: the opacity of all links.
+        alphas: the opacity of individual links, which is multiplied by `alpha`; links with 0 are not drawn.
+        color: the RGB colour of all links; None to use the links' own colours.
+        links: the colours of individual links.
+        only: the links that are drawn; None to draw all of them.
     """
 
     namespace: str
@@ -69,20 +69,20 @@ class Look:
 
 
 class UnusableStateError(ValueError):
-    """A state of the robot cannot be shown; the text gives the reason."""
+    """Raised when a robot state cannot be shown; the text gives the reason."""
 
 
 class PosableRobot:
     """A robot that can be drawn in any state.
 
     Args:
-        robot: its description.
-        index: finds the files that it names.
+        robot: the robot's description.
+        index: finds the files that the description refers to.
 
     Attributes:
-        root: the name of its root link, which is that of its frame.
-        shaped_links: the names of links with shapes, in alphabetic order.
-        problems: by link, the problems with its files.
+        root: the name of the root link, which is also the name of its frame.
+        shaped_links: the names of the links with shapes, in alphabetical order.
+        problems: the problems with files, by link.
     """
 
     def __init__(self, robot: Robot, index: MeshIndex) -> None:
@@ -100,15 +100,15 @@ class PosableRobot:
         self.root = self._tree.link_names[0]
 
     def has_link(self, name: str) -> bool:
-        """Return whether it has a link of this name."""
+        """Return whether the robot has a link with this name."""
         return name in self._links
 
     def has_joint(self, name: str) -> bool:
-        """Return whether it has a joint of this name."""
+        """Return whether the robot has a joint with this name."""
         return name in self._joints
 
     def links_moved_by(self, joints: AbstractSet[str]) -> set[str]:
-        """Return the links whose poses depend on one of these joints."""
+        """Return the links whose poses depend on any of these joints."""
         pending = [self._children[name] for name in joints if name in self._children]
         found: set[str] = set()
         while pending:
@@ -119,13 +119,13 @@ class PosableRobot:
         return found
 
     def set_state(self, state: JointPositions, message: Any) -> list[str]:
-        """Write the joint positions of a moveit_msgs/msg/RobotState into a state.
+        """Set the joint positions of a state from a moveit_msgs/msg/RobotState.
 
         Returns:
             The joints of the message that the robot does not have.
 
         Raises:
-            UnusableStateError: lists of different lengths, or numbers that are not finite.
+            UnusableStateError: lists have different lengths, or numbers are not finite.
         """
         joints = message.joint_state
         unknown = self.set_joints(state, joints.name, joints.position)
@@ -144,7 +144,7 @@ class PosableRobot:
         return unknown
 
     def set_root(self, state: JointPositions, frame: str, transform: Any) -> None:
-        """Set the pose of the root to a geometry_msgs/msg/Transform in a frame."""
+        """Set the root's pose in a state from a geometry_msgs/msg/Transform relative to a frame."""
         at, turn = transform.translation, transform.rotation
         if not all(map(math.isfinite, (at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w))):
             raise UnusableStateError(phrase("The state has invalid floating point values (nans or infs)"))
@@ -153,7 +153,7 @@ class PosableRobot:
         state.root_in_frame = (x, y, z, qx, qy, qz, qw)
 
     def set_joints(self, state: JointPositions, names: Any, positions: Any) -> list[str]:
-        """Write positions of joints into a state; see `set_state`."""
+        """Set joint positions in a state; see `set_state`."""
         if len(names) != len(positions):
             raise UnusableStateError(
                 phrase(
@@ -175,7 +175,7 @@ class PosableRobot:
         return unknown
 
     def link_poses(self, state: JointPositions) -> dict[str, Transform]:
-        """Return the poses of the links in the frame of a state."""
+        """Return the poses of the links in a state, relative to `frame_of` that state."""
         matrices = self._tree.forward(state.values)
         turns = quaternion_from_matrix(matrices[:, :3, :3]).tolist()
         places = matrices[:, :3, 3].tolist()
@@ -185,11 +185,11 @@ class PosableRobot:
         }
 
     def frame_of(self, state: JointPositions) -> str:
-        """Return the frame of the links' poses."""
+        """Return the frame that the links' poses are relative to."""
         return state.frame or self.root
 
     def markers(self, state: JointPositions, look: Look) -> list[MarkerShape]:
-        """Return the markers of the robot in a state."""
+        """Return the markers that draw the robot in a state."""
         frame = self.frame_of(state)
         made: list[MarkerShape] = []
         for name, pose in self.link_poses(state).items():
@@ -212,7 +212,7 @@ class PosableRobot:
 
 @dataclass(frozen=True, slots=True)
 class _PoseOf:
-    """A transform with the names of a pose."""
+    """Gives a transform the attribute names of a pose."""
 
     position: Any
     orientation: Any

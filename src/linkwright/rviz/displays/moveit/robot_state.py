@@ -29,7 +29,7 @@ _HIGHLIGHTS = "Highlights"
 
 
 class RobotStateDisplay(MoveItDisplay):
-    """The robot in the state of the last message of a topic, with links in colours that the message gives them."""
+    """The robot in the state of the topic's last message, with links in the colours that the message specifies."""
 
     CLASS = "moveit_rviz_plugin/RobotState"
     MESSAGE = "moveit_msgs/msg/DisplayRobotState"
@@ -58,12 +58,12 @@ class RobotStateDisplay(MoveItDisplay):
         self.draw()
 
     def robot_changed(self) -> None:
-        """Show the state of this robot."""
+        """Show the last state with the new robot."""
         if self.last is not None:
             self._read(self.last)
 
     def reset(self) -> None:
-        """Forget the state."""
+        """Discard the state."""
         self._state = JointPositions()
         self._attached = Scene()
         super().reset()

@@ -1,4 +1,4 @@
-"""A planning scene that is kept up to date with changes."""
+"""A planning scene that is updated by changes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ OCTOMAP = "<octomap>"
 
 @dataclass(frozen=True, slots=True)
 class SceneObject:
-    """A moveit_msgs/msg/CollisionObject, with the same names."""
+    """A moveit_msgs/msg/CollisionObject, with the same field names."""
 
     id: str
     frame: str
@@ -39,23 +39,23 @@ class SceneObject:
 
     @classmethod
     def of(cls, message: Any) -> SceneObject:
-        """Return the object of a message."""
+        """Return the object that a message describes."""
         shapes: dict[str, Any] = {name: tuple(getattr(message, name)) for name in _SHAPES}
         return cls(message.id, message.header.frame_id.removeprefix("/"), message.pose, **shapes)
 
     def with_more(self, message: Any) -> SceneObject:
-        """Return the object with the shapes of a message added."""
+        """Return the object with the message's shapes added."""
         shapes: dict[str, Any] = {name: (*getattr(self, name), *getattr(message, name)) for name in _SHAPES}
         return replace(self, **shapes)
 
     def moved(self, message: Any) -> SceneObject:
-        """Return the object at the pose of a message."""
+        """Return the object moved to the pose in a message."""
         poses: dict[str, Any] = {name: tuple(found) for name in _POSES if (found := getattr(message, name))}
         return replace(self, frame=message.header.frame_id.removeprefix("/"), pose=message.pose, **poses)
 
     @property
     def has_shapes(self) -> bool:
-        """Whether it has shapes to draw."""
+        """Whether the object has shapes to draw."""
         return bool(self.primitives or self.meshes or self.planes)
 
 
@@ -65,7 +65,7 @@ _SHAPES = ("primitives", "meshes", "planes", *_POSES)
 
 @dataclass(frozen=True, slots=True)
 class PlacedCells:
-    """The cells of an octomap, and their pose."""
+    """The cells of an octomap and the octomap's pose."""
 
     cells: Cells
     frame: str
@@ -73,14 +73,14 @@ class PlacedCells:
 
 
 class Scene:
-    """The objects around a robot, the attached ones, and its joint positions.
+    """The objects around a robot, the objects attached to it, and its joint positions.
 
     Attributes:
         name: the name of the scene.
         is_whole: whether the full scene is known, and not only the changes since the subscription.
         state: the robot's state.
-        octomap: its cells, if there is one.
-        problems: the problems, by their subject.
+        octomap: the cells of the octomap, if there is one.
+        problems: the problems, by subject.
     """
 
     def __init__(self) -> None:
@@ -94,7 +94,7 @@ class Scene:
         self._colors: dict[str, Color] = {}
 
     def apply(self, message: Any) -> None:
-        """Apply a moveit_msgs/msg/PlanningScene, a full scene or a difference, without the joints of the robot."""
+        """Apply a moveit_msgs/msg/PlanningScene, which is a full scene or a difference, except the robot's joints."""
         if not message.is_diff:
             self._objects.clear()
             self._held.clear()
@@ -116,12 +116,12 @@ class Scene:
             self._map(octomap)
 
     def attach(self, messages: Iterable[Any]) -> None:
-        """Apply a moveit_msgs/msg/AttachedCollisionObject, which attaches or detaches an object."""
+        """Apply moveit_msgs/msg/AttachedCollisionObject messages, which attach or detach objects."""
         for attached in messages:
             self._attach(attached)
 
     def object_markers(self, namespace: str, color: Color) -> list[MarkerShape]:
-        """Return the markers of the objects around the robot."""
+        """Return the markers of the unattached objects around the robot."""
         made: list[MarkerShape] = []
         for known_object in self._objects.values():
             chosen = self._colors.get(known_object.id, color)
@@ -131,7 +131,7 @@ class Scene:
     def held_markers(
         self, robot: PosableRobot, state: JointPositions, namespace: str, color: Color
     ) -> list[MarkerShape]:
-        """Return the markers of the attached objects, in a state of the robot."""
+        """Return the markers of the attached objects for a state of the robot."""
         links = robot.link_poses(state)
         made: list[MarkerShape] = []
         for link, held in self._held.values():

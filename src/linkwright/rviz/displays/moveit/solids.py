@@ -1,4 +1,4 @@
-"""Collision objects as markers: primitives, meshes, planes."""
+"""Draws collision objects as markers: primitives, meshes and planes."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _ROUND = 24
 
 
 class BadObjectError(ValueError):
-    """A collision object cannot be drawn; the text gives the reason."""
+    """Raised when a collision object cannot be drawn; the text gives the reason."""
 
 
 def object_markers(message: Any, namespace: str, color: Color, *, frame: str, base: Transform) -> list[MarkerShape]:
@@ -40,12 +40,12 @@ def object_markers(message: Any, namespace: str, color: Color, *, frame: str, ba
     Args:
         message: the object. A pose that is not set means no translation and no rotation.
         namespace: the markers' namespace.
-        color: the colour of all its shapes.
+        color: the colour of all shapes.
         frame: the frame that the markers follow.
-        base: the pose of the frame in the message's header in `frame`.
+        base: the pose, in `frame`, of the frame in the message's header.
 
     Raises:
-        BadObjectError: numbers that are not finite, shapes without poses, a shape that does not exist.
+        BadObjectError: a number is not finite, a shape has no pose, or the kind of shape does not exist.
     """
     in_frame = compose(base, _pose(message.pose))
     groups: tuple[tuple[str, Sequence[Any], Sequence[Any], Callable[[Any], Form]], ...] = (
@@ -121,7 +121,7 @@ def _cone(_: Any, sizes: list[float]) -> Form:
 
 
 def _prism(shape: Any, sizes: list[float]) -> Form:
-    """Return a polygon extruded to a height, half of it below; its corners are in order."""
+    """Return a polygon extruded to a height and centred on its plane; its corners are in order."""
     flat = [(point.x, point.y) for point in shape.polygon.points]
     if len(flat) < 3:
         raise BadObjectError(phrase("The polygon of a prism has {corners} corners", corners=len(flat)))
@@ -165,7 +165,7 @@ def _mesh(mesh: Any) -> Form:
 
 
 def _plane(plane: Any) -> Form:
-    """Return a square about the point of a x + b y + c z + d = 0 that is nearest to the origin."""
+    """Return a square around the point of the plane a x + b y + c z + d = 0 that is nearest to the origin."""
     normal, distance = np.array(plane.coef[:3], dtype=np.float64), float(plane.coef[3])
     length = float(np.linalg.norm(normal))
     if not math.isfinite(length) or length == 0.0:

@@ -1,4 +1,4 @@
-"""moveit_rviz_plugin/Trajectory, and the player of motions."""
+"""moveit_rviz_plugin/Trajectory, and a player for motions."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ class Motion:
     """The states of a robot's motion.
 
     Attributes:
-        states: the first of them is that of the start.
-        durations: seconds from each state to the next.
+        states: the states; the first one is the start state.
+        durations: the time from each state to the next, seconds.
         joints: the joints that move.
         unknown: joints that the robot does not have.
     """
@@ -47,10 +47,10 @@ class Motion:
 
 
 def read_motion(robot: PosableRobot, message: Any) -> Motion:
-    """Return the states of a moveit_msgs/msg/DisplayTrajectory.
+    """Return the motion in a moveit_msgs/msg/DisplayTrajectory.
 
     Raises:
-        UnusableStateError: it has no states, too many, or some that cannot be shown.
+        UnusableStateError: the message has no states, too many states, or a state that cannot be shown.
     """
     state = JointPositions()
     unknown = robot.set_state(state, message.trajectory_start)
@@ -77,7 +77,10 @@ def read_motion(robot: PosableRobot, message: Any) -> Motion:
 
 
 def _set_root(robot: PosableRobot, state: JointPositions, trajectory: Any, point: Any) -> None:
-    """Set the root from a point of a trajectory_msgs/msg/MultiDOFJointTrajectory; unknown joints move it."""
+    """Set the root from a point of a trajectory_msgs/msg/MultiDOFJointTrajectory.
+
+    Joints that the robot does not have move the root.
+    """
     for name, transform in zip(trajectory.joint_names, point.transforms, strict=False):
         if not robot.has_joint(name):
             robot.set_root(state, trajectory.header.frame_id, transform)
@@ -88,11 +91,11 @@ def _seconds(duration: Any) -> float:
 
 
 def shown_for(text: str, duration: float) -> float:
-    """Return the seconds that a state is shown.
+    """Return the number of seconds that a state is shown.
 
     Args:
         text: the State Display Time.
-        duration: seconds from this state to the next in the motion.
+        duration: the time from this state to the next in the motion, seconds.
     """
     text = text.strip().lower()
     if text == "realtime":
@@ -105,11 +108,11 @@ def shown_for(text: str, duration: float) -> float:
 
 
 class MotionPlayer:
-    """Shows the states of a motion one after the other.
+    """Shows the states of a motion in sequence.
 
     Args:
-        display: the display with the properties.
-        above: the path of the group that has these properties.
+        display: the display that has the properties.
+        above: the path of the group that contains these properties.
         show: called when the state to draw changes.
     """
 
@@ -125,16 +128,16 @@ class MotionPlayer:
 
     @property
     def is_playing(self) -> bool:
-        """Whether further states follow."""
+        """Whether more states follow."""
         return self._timer is not None
 
     @property
     def state(self) -> JointPositions | None:
-        """The state to draw, or None after the end."""
+        """The state to draw, or None after the end of the motion."""
         return self.motion.states[self._place] if self.motion and self.is_playing else None
 
     def play(self, message: Any) -> None:
-        """Play a moveit_msgs/msg/DisplayTrajectory, after the present one unless that is to be interrupted."""
+        """Play a moveit_msgs/msg/DisplayTrajectory, after the current motion unless that is to be interrupted."""
         if self.is_playing and not self._flag("Interrupt Display") and not self._flag(_LOOP):
             self._next = message
             return
@@ -152,12 +155,12 @@ class MotionPlayer:
             self._begin()
 
     def forget(self) -> None:
-        """Stop, and forget the motion."""
+        """Stop playing and discard the motion."""
         self._stop()
         self._message = self._next = self.motion = None
 
     def draw(self, group: str) -> None:
-        """Put the present state and the trail into groups of markers of the display."""
+        """Draw the current state and the trail in marker groups of the display."""
         robot, motion = self._display.robot, self.motion
         now, trail = [], []
         if robot is not None and motion is not None:
@@ -228,7 +231,7 @@ class MotionPlayer:
 
 
 class TrajectoryDisplay(MoveItDisplay):
-    """The motions of a topic, played."""
+    """Plays the motions published on a topic."""
 
     CLASS = "moveit_rviz_plugin/Trajectory"
     MESSAGE = "moveit_msgs/msg/DisplayTrajectory"
@@ -252,11 +255,11 @@ class TrajectoryDisplay(MoveItDisplay):
         self._player.property_changed(path)
 
     def robot_changed(self) -> None:
-        """Play the motion of this robot."""
+        """Play the motion again with the new robot."""
         self._player.begin_again()
 
     def reset(self) -> None:
-        """Forget the motion."""
+        """Discard the motion."""
         self._player.forget()
         super().reset()
 
@@ -266,6 +269,6 @@ class TrajectoryDisplay(MoveItDisplay):
         super().stop()
 
     def draw(self) -> None:
-        """Draw the state that is shown now, and the trail."""
+        """Draw the current state and the trail."""
         self._player.draw("Planned Path")
         self.drawn()

@@ -40,15 +40,15 @@ def rendered(cells: Cells, rendering: str) -> Cells:
 def octomap_markers(
     cells: Cells, namespace: str, *, frame: str, base: Transform, alpha: float, by_probability: bool
 ) -> list[MarkerShape]:
-    """Return boxes for the cells of an octree, a marker for each of their sizes, without hidden ones.
+    """Return cube markers for the visible cells of an octree, one marker for each cell size.
 
     Args:
-        cells: in the frame of the tree.
+        cells: the cells, in the frame of the tree.
         namespace: the markers' namespace.
-        frame: the frame that they follow.
-        base: the pose of the tree in it.
-        alpha: opacity of all.
-        by_probability: whether colours show the probability that a cell is occupied, not its height.
+        frame: the frame that the markers follow.
+        base: the pose of the tree in `frame`.
+        alpha: the opacity of all cells.
+        by_probability: whether colours show the probability that a cell is occupied, instead of its height.
     """
     cells = cells.chosen(_is_seen(cells))
     if not len(cells.sizes):
@@ -90,7 +90,7 @@ _RAINBOW = np.array([colorsys.hsv_to_rgb(0.8 * (1.0 - step / 63.0), 1.0, 1.0) fo
 
 
 def _is_seen(cells: Cells) -> NDArray[np.bool_]:
-    """Return a mask of the cells with a side without a neighbour of their own size."""
+    """Return a mask of the cells that have a side without a neighbour of the same size."""
     seen = np.ones(len(cells.sizes), dtype=np.bool_)
     for size in np.unique(cells.sizes):
         mask = cells.sizes == size
