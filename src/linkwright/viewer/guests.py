@@ -1,6 +1,6 @@
-"""Recordings that pages uploaded or made: each in a graph and a viewer of its own, on that viewer's server.
+"""Recordings that pages uploaded or made: each has its own graph and viewer, on the host viewer's server.
 
-They reach neither the graph of that viewer nor the network.
+They reach neither the graph of the host viewer nor the network.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class GuestRecordings:
     """Shows recordings to the pages that uploaded or made them.
 
     Args:
-        host: the viewer, on whose server they are shown.
+        host: the viewer whose server shows them.
     """
 
     def __init__(self, host: Viewer) -> None:
@@ -53,7 +53,9 @@ class GuestRecordings:
         self._closing: set[asyncio.Task[None]] = set()
 
     async def open(self, path: Path, scratch: TemporaryDirectory[str] | None) -> str:
-        """Show a recording until a minute after its last page has gone; returns its name for pages.
+        """Show a recording, and return its name for pages.
+
+        It is shown until a minute after its last page was closed.
 
         Args:
             path: the path of its file or folder.
@@ -62,7 +64,7 @@ class GuestRecordings:
         Raises:
             LinkwrightError: BAG101, BAG102, BAG107, see `BagReader`; BAG111, the limit of recordings is reached.
         """
-        from linkwright.bag import BagReader, Playback  # here, because few viewers show uploaded recordings
+        from linkwright.bag import BagReader, Playback  # imported here because few viewers show uploaded recordings
         from linkwright.viewer.recorded_robot import published, robot_of
         from linkwright.viewer.recording_config import recording_config
 
@@ -104,7 +106,7 @@ class GuestRecordings:
         return key
 
     def audience(self, key: str) -> Audience | None:
-        """Return the pages of a recording that is shown, or None if there is none of that name."""
+        """Return the pages that show the recording of a name; None if there is no such recording."""
         guest = self._guests.get(key)
         return None if guest is None else guest.viewer.audience
 
@@ -116,7 +118,7 @@ class GuestRecordings:
         await asyncio.gather(*(_end(guest) for guest in guests.values()), *self._closing)
 
     async def _make_room(self) -> None:
-        """At the limit, end the recording that has been without pages longest, so that another can be opened."""
+        """At the limit, close the recording that has been without pages longest."""
         if len(self._guests) < _MOST:
             return
         until = asyncio.get_running_loop().time() - _LEFT
@@ -130,7 +132,7 @@ class GuestRecordings:
             self._looking = asyncio.get_running_loop().call_later(_LOOK, self._look)
 
     def _look(self) -> None:
-        """End the recordings that have no pages."""
+        """Close the recordings that have no pages."""
         self._looking = None
         loop = asyncio.get_running_loop()
         for key, guest in list(self._guests.items()):

@@ -1,4 +1,4 @@
-"""A snapshot of a model file, without a browser."""
+"""Take a snapshot of a model file without a browser."""
 
 from __future__ import annotations
 
@@ -27,25 +27,27 @@ if TYPE_CHECKING:
 def snapshot_of_model(
     text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder, old: OldDescription | None = None
 ) -> Snapshot:
-    """Return a snapshot of a model as `linkwright view` shows it, its joints at zero or as near as limits allow.
+    """Return a snapshot of a model as `linkwright view` shows it.
+
+    Joints are at zero, or as near to it as their limits allow.
 
     Args:
         text: the description.
         robot: the robot of the text.
         library: has the source positions of its elements.
         finder: finds its meshes.
-        old: the description to compare with; None for none.
+        old: the description to compare with; None for no comparison.
     """
     return asyncio.run(_snapshot(text, robot, library, finder, old))
 
 
 @dataclass(frozen=True)
 class OldDescription:
-    """The older of two descriptions.
+    """The older of two compared descriptions.
 
     Attributes:
-        pair: both.
-        text: the text that identifies the old one in the library.
+        pair: the older and the newer description.
+        text: the text that identifies the older one in the library.
     """
 
     pair: Pair

@@ -1,7 +1,7 @@
-"""A robot in a cell of a notebook, with a slider for each joint.
+"""Show a robot in a notebook cell, with a slider for each joint.
 
-The cell holds the page that ``linkwright export`` writes, in a frame of its own. It needs no server and no network, so
-it also works in saved notebooks, and wherever notebooks run: Jupyter, VS Code, marimo (decision 0112).
+The cell contains the page that ``linkwright export`` writes, in an iframe. It needs no server and no network, so it
+also works in saved notebooks, and wherever notebooks run: Jupyter, VS Code, marimo (decision 0112).
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ _FRAME = (
 
 @dataclass(frozen=True)
 class RobotCell:
-    """The output of a notebook's cell that shows a robot.
+    """The output of a notebook cell that shows a robot.
 
     Attributes:
         name: the robot's name.
         page: the HTML document that shows it.
-        height: of the cell, in pixels.
+        height: the height of the cell, in pixels.
         diagnostics: the findings about the description.
     """
 

@@ -1,4 +1,4 @@
-"""The robot of a recording without transforms: its link poses are computed from recorded joint states."""
+"""The robot of a recording without transforms; its link poses are computed from recorded joint states."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ _DESCRIPTION = "/robot_description"
 
 
 def description_topic(bag: BagReader) -> str | None:
-    """Return the topic with the description of the recording's robot, or None."""
+    """Return the topic with the description of the recording's robot; None if there is none."""
     names = [topic.name for topic in bag.topics if topic.count and topic.name.endswith(_DESCRIPTION)]
     own = namespace_of_transforms(bag) + _DESCRIPTION
     return own if own in names else next(iter(names), None)
 
 
 def namespace_of_transforms(bag: BagReader) -> str:
-    """Return the namespace of the first robot if all transforms are in namespaces, such as ``/robot1``; else nothing.
+    """Return the namespace of the first robot, such as ``/robot1``; empty unless all transforms have one.
 
-    Of several robots it is the first that has a description.
+    If there are several robots, the first with a description is chosen.
     """
     names = [topic.name for topic in bag.topics if topic.count]
     if TRANSFORMS in names or STATIC_TRANSFORMS in names:
@@ -39,13 +39,13 @@ def namespace_of_transforms(bag: BagReader) -> str:
 
 
 def lacks_transforms(bag: BagReader) -> bool:
-    """Return whether a recording has only joint states for the positions of joints."""
+    """Return whether a recording has no moving transforms, but only joint states."""
     moving = namespace_of_transforms(bag) + TRANSFORMS
     return not any(topic.name == moving and topic.count for topic in bag.topics)
 
 
 def robot_of(bag: BagReader, library: DescriptionLibrary) -> Robot | None:
-    """Return the robot of a recording, or None if there is none that can be read.
+    """Return the robot of a recording; None if it has no readable robot.
 
     Args:
         bag: the recording.
@@ -58,13 +58,13 @@ def robot_of(bag: BagReader, library: DescriptionLibrary) -> Robot | None:
         first = next(iter(bag.messages([topic])), None)
         return None if first is None else library.read(deserialize(first[2], String).data).robot
     except LinkwrightError:
-        return None  # the display of the robot reports the error
+        return None  # the RobotModel display reports the error
 
 
 class PlacedRobot:
-    """Publishes a recording, and its robot's transforms from joint states, as robot_state_publisher would.
+    """Publishes a recording, and its robot's transforms computed from joint states, as robot_state_publisher would.
 
-    Joints without a message yet are at zero, or in the middle of limits without zero.
+    Joints without a message so far are at zero, or in the middle of their limits if those exclude zero.
 
     Args:
         recording: publishes the recorded messages.
@@ -86,7 +86,10 @@ class PlacedRobot:
         node.get_logger().info("The recording has no /tf: the robot's transforms are computed from its joint states")
 
     def wanted(self) -> frozenset[str]:
-        """Return the topics with subscriptions, and the sources of the robot's transforms if these have some."""
+        """Return the topics that have subscriptions.
+
+        The sources of the robot's transforms are included if the transforms have subscriptions.
+        """
         topics = self._recording.wanted()
         if self._moving.get_subscription_count():
             topics |= {topic for topic in (self._description, self._joint_states) if topic is not None}
@@ -118,12 +121,12 @@ class PlacedRobot:
 
 
 def published(bag: BagReader, node: Node, robot: Robot | None) -> PublishedRecording | PlacedRobot:
-    """Return the publisher for a recording that has a graph to itself.
+    """Return the publisher for a recording that has its own graph.
 
     Args:
         bag: the recording.
         node: the node that publishes.
-        robot: the robot of `robot_of`.
+        robot: the robot that `robot_of` returned.
     """
     namespace = namespace_of_transforms(bag)
     recording = PublishedRecording(node, bag, namespace)
@@ -135,5 +138,5 @@ def published(bag: BagReader, node: Node, robot: Robot | None) -> PublishedRecor
 def _zeros(robot: Robot) -> dict[str, float]:
     try:
         return {joint.name: joint.zero for joint in layout_of(robot, JointSettings()).free}
-    except LinkwrightError:  # joints that mimic one another in a circle: only joints with messages have a position
+    except LinkwrightError:  # joints mimic one another in a cycle: only joints with messages have a position
         return {}

@@ -1,4 +1,4 @@
-"""The first configuration for a recording."""
+"""Create the initial configuration for a recording."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ _DISPLAYS = (
 
 
 def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
-    """Return the first configuration for a recording: its robot, and a display for each topic of the usual types.
+    """Return a recording's initial configuration: its robot, and displays for topics of common types.
 
-    Transforms are drawn if there is no robot, which their axes would cover. A recording of a simulation shows its
-    world, in the frame of the world; its robot model is disabled, because the world contains the robot.
+    Transforms are shown only if there is no robot, which their axes would cover. A recording of a simulation shows its
+    world in the world frame, and its robot model is disabled because the world contains the robot.
 
     Args:
         bag: the recording.
-        robot: its robot, if that can be read.
+        robot: the recorded robot, if it can be read.
     """
     described, namespace = description_topic(bag), namespace_of_transforms(bag)
     root, children = _tree(bag, namespace)
@@ -79,14 +79,14 @@ def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
         for topic in (topic for topic in bag.topics if topic.type_name == message and topic.count):
             if world and topic.name.startswith(RAYS_TOPIC):
                 continue  # the World display draws them
-            own = not namespace or topic.name.startswith(f"{namespace}/")  # frames of other robots have the same names
+            own = not namespace or topic.name.startswith(f"{namespace}/")  # other robots use the same frame names
             _add(config, kind, topic, checked=own and shown[kind] < most)
             shown[kind] += own
     return config
 
 
 def _has_world(bag: BagReader) -> bool:
-    """Return whether it is of a simulation: whether it has the world, and the poses in it."""
+    """Return whether the recording contains a simulated world and the poses in it."""
     there = {topic.name for topic in bag.topics if topic.count}
     return {DESCRIPTION_TOPIC, POSES_TOPIC} <= there
 
@@ -104,15 +104,15 @@ def _add(config: RvizConfig, kind: str, topic: BagTopic, *, checked: bool) -> No
 
 
 def _bases(robot: Robot | None) -> list[str]:
-    """Return the candidates for the base frame of a robot, the best first (REP 105, REP 120)."""
+    """Return the candidates for the robot's base frame, best first (REP 105, REP 120)."""
     return ["base_footprint", "base_link"] if robot is None else [robot.root, *robot.links]
 
 
 def _tree(bag: BagReader, namespace: str) -> tuple[str | None, set[str]]:
-    """Return the root frame, or None, and the other frames, from the transforms of two moments.
+    """Return the root frame, or None, and the other frames, from the transforms at two moments.
 
-    These are the beginning of the transforms and the middle of the recording: a node that localizes the robot on a map
-    may have started later.
+    The moments are the beginning of the transforms and the middle of the recording, because a node that localizes the
+    robot on a map may have started later.
     """
     both = namespace + TRANSFORMS, namespace + STATIC_TRANSFORMS
     names = [topic.name for topic in bag.topics if topic.name in both and topic.count]
@@ -128,7 +128,7 @@ def _tree(bag: BagReader, namespace: str) -> tuple[str | None, set[str]]:
 
 
 def _frame_of_messages(bag: BagReader) -> str:
-    """Return the frame of the first message that is shown: without transforms, it becomes the Fixed Frame."""
+    """Return the frame of the first displayed message: the Fixed Frame if there are no transforms."""
     for message, _, _ in _DISPLAYS:
         for topic in (topic for topic in bag.topics if topic.type_name == message and topic.count):
             first = next(iter(bag.messages([topic.name])), None)

@@ -1,4 +1,4 @@
-"""The viewer: a node of the graph whose window is a page in a browser."""
+"""The viewer: a node of the graph whose window is a browser page."""
 
 from __future__ import annotations
 
@@ -41,23 +41,23 @@ _FIXED_FRAME = "fixed_frame"
 
 
 class Viewer:
-    """Shows what RViz would show of a graph, in a browser.
+    """Shows in a browser what RViz would show of a graph.
 
-    It must be created inside a running asyncio loop. Edits of pages are in `config`; the pages, or `config.save`, save
+    It must be created inside a running asyncio loop. Pages' edits are in `config`; the pages, or `config.save`, save
     them.
 
     Args:
-        graph: the graph that it is a node of.
+        graph: the graph in which its node is created.
         library: reads descriptions, each once for the whole process.
-        finder: finds packages, and so meshes.
+        finder: finds packages and the meshes in them.
         config: displays, options and view.
         host: the address to listen on; any but this machine's loopback address admits others who know the token.
         port: 0 for any; None for 7448 or the next free one.
-        server: the server, which may serve the page already; None for one at `host` and `port`.
+        server: the server, which may already serve the page; None for one at `host` and `port`.
         title: the title of the page.
         options: the node's name, remappings, parameters and ROS arguments.
         history: the bytes of received messages that are stored, for pages to show the last minutes; 0 for none.
-        beside: another viewer, whose server has this one's pages too; None for a server of its own.
+        beside: another viewer, whose server also serves this one's pages; None for a server of its own.
 
     Attributes:
         guests: shows the recordings that pages upload to this viewer; None if it accepts none.
@@ -97,7 +97,7 @@ class Viewer:
         self._receivers: dict[str, Callable[[Page, Any], object]] = {}
         self._audience = Audience(self._opening, self._receivers, self._page_closed, self._node.get_logger())
         shared: dict[str, Any] = {"meshes": self._server.meshes, "downloads": self._server.downloads}
-        if beside is not None:  # served content with ids that are unique among its viewers
+        if beside is not None:  # share the files, and the IDs that must be unique on one server
             served = beside.context
             shared = {"meshes": served.meshes, "downloads": served.downloads, "display_ids": served.display_ids}
         self.context: ViewerContext = ViewerContext(
@@ -121,7 +121,7 @@ class Viewer:
     # --- life --------------------------------------------------------------------------------------------------
 
     async def start(self) -> None:
-        """Listen, subscribe, and serve.
+        """Subscribe to topics, and serve pages.
 
         Raises:
             LinkwrightError: VIEW101 to VIEW103, it cannot listen at the address.
@@ -137,7 +137,7 @@ class Viewer:
                 feature.start()
             if self._beside is None:
                 self._server.show(self._audience, self.guests)
-        except BaseException:  # cancelled, too: the code that ends the program does not know this viewer yet
+        except BaseException:  # also when cancelled: the caller does not have this viewer yet, so it cannot close it
             self._node.destroy_node()
             await self._server.close()
             raise
@@ -152,9 +152,9 @@ class Viewer:
             )
 
     async def close(self) -> None:
-        """Close the connections to pages, leave the graph and stop listening."""
+        """Close the connections to pages, destroy the node, and stop listening."""
         self._server.leave_token(pages_wait=len(self._audience) > 0)
-        async with AsyncExitStack() as stack:  # all of these run, even after one fails
+        async with AsyncExitStack() as stack:  # run all of these even if one fails
             stack.callback(self._node.destroy_node)
             stack.callback(self.context.published.close)
             if self._beside is not None:
@@ -168,17 +168,17 @@ class Viewer:
 
     @property
     def pages_wait(self) -> bool:
-        """Whether pages of the former program at this port are looking for this one."""
+        """Whether pages of the previous program at this port are trying to reconnect."""
         return self._server.pages_wait
 
     def keep_unsaved(self) -> list[Diagnostic]:
-        """Store unsaved edits of pages, before the program ends; returns the findings about it."""
+        """Store pages' unsaved edits before the program ends, and return the findings about that."""
         notices = keep_unsaved(manager.config for manager in self.managers.all() if manager.history.unsaved)
         return [*notices, *(notice for feature in self._features for notice in feature.keep_unsaved())]
 
     @property
     def url(self) -> str:
-        """The address to open in a browser, token included; empty before `start`."""
+        """The address to open in a browser, including the token; empty before `start`."""
         return self._server.url
 
     @property
@@ -188,7 +188,7 @@ class Viewer:
 
     @property
     def manager(self) -> VisualizationManager:
-        """The manager of all pages without displays of their own."""
+        """The manager that all pages without their own displays share."""
         return self.managers.shared
 
     @property
@@ -215,11 +215,11 @@ class Viewer:
             feature.recording_shown()
 
     def playback_failed(self, error: LinkwrightError) -> None:
-        """Show pages an error: the rest of the recording cannot be read."""
+        """Show pages the error that makes the rest of the recording unreadable."""
         self._timeline.failed(error)
 
     def attach_comparison(self, pair: Pair, node: Node) -> Callable[[str], None]:
-        """Show pages the differences of two descriptions; see `ComparisonFeature.attach`."""
+        """Show pages the differences between two descriptions, see `ComparisonFeature.attach`."""
         from linkwright.panels.comparison.feature import ComparisonFeature
 
         return self.add_feature(ComparisonFeature).attach(pair, node)
@@ -229,11 +229,13 @@ class Viewer:
         return self.add_feature(TimelineFeature)
 
     def add_feature(self, cls: type[F], receives: Iterable[str] = ()) -> F:
-        """Return the feature of a class, which receives all events from now on; the existing one, if any.
+        """Return the feature of a class, and create it if it does not exist yet.
+
+        From then on it receives all events.
 
         Args:
-            cls: its class.
-            receives: addresses of messages that it receives beside those that its class names.
+            cls: the class of the feature.
+            receives: addresses of messages that it handles in addition to those that its class names.
         """
         found = next((feature for feature in self._features if type(feature) is cls), None)
         if found is None:
@@ -257,11 +259,11 @@ class Viewer:
     def _opening(self, page: Page) -> list[Payload]:
         manager = self.managers.enter(page)
         messages, frames = self.opening_messages(manager)
-        manager.pages.add(page)  # later messages follow all of these
+        manager.pages.add(page)  # add it only now, so that later messages follow all of these
         return [*(encode(message, page.language) for message in messages), *frames]
 
     def opening_messages(self, manager: VisualizationManager) -> tuple[list[ServerMessage], list[Payload]]:
-        """Return messages for a page that begins to see a configuration, the frame table last; and binary frames."""
+        """Return the messages (frame table last) and binary frames for a page that opens a configuration."""
         messages: list[ServerMessage] = [Hello(PROTOCOL_VERSION, __version__, self._title, self._run)]
         shown, table, frames = manager.opening()
         messages += self._openings(before_displays=True)
@@ -271,13 +273,13 @@ class Viewer:
 
     def _openings(self, *, before_displays: bool) -> list[ServerMessage]:
         messages: list[ServerMessage] = []
-        for feature in self._features:  # one may create others, which have messages too
+        for feature in self._features:  # `opening` may add further features to this list, which the loop reaches too
             if feature.BEFORE_DISPLAYS is before_displays:
                 messages += feature.opening()
         return messages
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return the messages of all features about a configuration."""
+        """Return all features' messages about a configuration."""
         return [message for feature in self._features for message in feature.configured(manager)]
 
     def _page_closed(self, page: Page) -> None:
@@ -285,25 +287,25 @@ class Viewer:
             feature.page_closed(page)
         self.managers.leave(page)
 
-    # --- what happens to managers ------------------------------------------------------------------------------
+    # --- events of managers ------------------------------------------------------------------------------------
 
     def edited(self, manager: VisualizationManager) -> None:
-        """Handle a change of undo, redo or the unsaved state."""
+        """Notify features that undo, redo or the unsaved state has changed."""
         for feature in self._features:
             feature.edited(manager)
 
     def robot_changed(self) -> None:
-        """Handle another robot of a display."""
+        """Notify features that a display has another robot."""
         for feature in self._features:
             feature.robot_changed()
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Handle the end of a manager."""
+        """Notify features that a manager was closed."""
         for feature in self._features:
             feature.manager_closed(manager)
 
     def fixed_frame_changed(self, manager: VisualizationManager) -> None:
-        """Handle another Fixed Frame; that of the shared configuration is a parameter of the node."""
+        """Handle a new Fixed Frame; the shared configuration's Fixed Frame is also a parameter of the node."""
         frame = manager.fixed_frame
         if manager is self.manager and self._node.get_parameter(_FIXED_FRAME).value != frame:
             self._node.set_parameters([Parameter(_FIXED_FRAME, value=frame)])
