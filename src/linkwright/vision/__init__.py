@@ -1,1 +1,1 @@
-"""Object detection, positions of objects, and datasets for detectors; without ROS."""
+"""Object detection, positions of objects, and datasets for detectors, without ROS."""

@@ -10,15 +10,16 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, slots=True)
 class Detections:
-    """Boxes in one image, the most certain first.
+    """The boxes in one image, the most certain first.
 
     Attributes:
-        boxes: shape ``(n, 4)``: left, top, right, bottom, in pixels of the input image, where pixel 0 is from 0 to 1.
-            They reach beyond its edges only for detectors that document it.
+        boxes: shape ``(n, 4)``: left, top, right, bottom, in pixels of the input image, where pixel 0 extends from 0 to
+            1. They reach beyond its edges only for detectors that document it.
         scores: shape ``(n,)``, 0 to 1.
         classes: shape ``(n,)``, indices in `names`.
         names: the names of the detector's classes.
-        corners: the corners of objects with four, such as markers: shape ``(n, 4, 2)``, in pixels, in their own order.
+        corners: the corners of objects with four, such as markers: shape ``(n, 4, 2)``, in pixels, in an order that the
+            detector defines.
     """
 
     boxes: NDArray[np.float32]

@@ -1,4 +1,4 @@
-"""The interface of detectors: an image in, boxes out."""
+"""The interface of detectors, which take an image and return boxes."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from linkwright.vision.detections import Detections
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Limits of detections. Defaults are those of yolo_ros.
+    """Limits of detections. The defaults are those of yolo_ros.
 
     Attributes:
-        threshold: the least score.
-        iou: how much two boxes of one class may overlap before the less certain is dropped.
-        most: the largest number of detections of an image.
+        threshold: the minimum score.
+        iou: the overlap of two boxes of one class above which the less certain one is dropped.
+        most: the maximum number of detections per image.
         classes: the names of the classes to detect; None for all.
     """
 
@@ -30,7 +30,7 @@ class Limits:
 
 
 class Detector(ABC):
-    """Detects objects in images. One thread at a time calls it."""
+    """Detects objects in images. Only one thread at a time may call it."""
 
     @property
     @abstractmethod
@@ -39,7 +39,7 @@ class Detector(ABC):
 
     @property
     def notes(self) -> tuple[Phrase, ...]:
-        """Remarks for its user, such as which of its results are left out."""
+        """Remarks for the user, for example on network outputs that are ignored."""
         return ()
 
     @abstractmethod
@@ -47,6 +47,6 @@ class Detector(ABC):
         """Detect objects in an image.
 
         Args:
-            image: shape ``(height, width, 3)``, red, green, blue.
-            limits: which detections count.
+            image: shape ``(height, width, 3)``, RGB.
+            limits: the limits of detections.
         """

@@ -1,4 +1,4 @@
-"""Evaluating detectors: average precision as COCO defines it, and confusion of classes."""
+"""Evaluate detectors: average precision as COCO defines it, and confusion of classes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ class GroundTruth:
     Attributes:
         boxes: shape ``(n, 4)``: left, top, right, bottom, in pixels.
         classes: shape ``(n,)``, indices in the dataset's names.
-        ignored: shape ``(n,)``, objects whose detection counts neither as right nor as wrong (``iscrowd`` in COCO).
+        ignored: shape ``(n,)``, whether a detection of the object counts neither as right nor as wrong (``iscrowd`` in
+            COCO).
     """
 
     boxes: NDArray[np.float32]
@@ -39,13 +40,13 @@ class GroundTruth:
 
 @dataclass(frozen=True, slots=True)
 class ClassFigures:
-    """The figures of one class.
+    """The results for one class.
 
     Attributes:
         name: the name of the class.
         objects: the number of objects.
         ap50: the average precision at an overlap of 0.5; None if there is no object.
-        ap: its mean over `OVERLAPS`; None likewise.
+        ap: the mean of the average precision over `OVERLAPS`; None if there is no object.
         precision: the share of correct detections among those with a score of at least 0.5; None if there are none.
         recall: the share of objects that these detections find; None if there is no object.
     """
@@ -60,18 +61,18 @@ class ClassFigures:
 
 @dataclass(frozen=True, slots=True)
 class Evaluation:
-    """The figures of a detector on a set of images.
+    """The results of a detector on a set of images.
 
     Attributes:
         images: the number of images.
         map50: the mean of `ClassFigures.ap50` over the classes with objects.
         map: the mean of `ClassFigures.ap`.
-        classes: the figures of each class.
-        confusion: shape ``(classes + 1, classes + 1)``: how many objects of a class (row) were taken for a class
-            (column) with a score of at least 0.5; the last column counts objects that were not found, the last row
-            detections where nothing is.
-        recall_by_size: name of a range of sizes, how many objects it has, the share of them found with a score of at
-            least 0.5.
+        classes: the results for each class.
+        confusion: shape ``(classes + 1, classes + 1)``: how many objects of a class (row) were detected as a class
+            (column) with a score of at least 0.5. The last column counts objects that were not found, the last row
+            detections where there is no object.
+        recall_by_size: for each size range its name, the number of objects, and the share of them found with a score of
+            at least 0.5.
     """
 
     images: int
@@ -107,8 +108,8 @@ def evaluate(names: Sequence[str], truth: Sequence[GroundTruth], found: Sequence
     Args:
         names: the class names of `truth`.
         truth: the labels of each image.
-        found: a detector's detections in the same images, with a threshold near 0. Classes are matched by their names;
-            those that `names` lacks do not count.
+        found: a detector's detections in the same images, with a threshold near 0. Classes are matched by name; those
+            that `names` lacks do not count.
     """
     known = {name: place for place, name in enumerate(names)}
     detections = [_in_terms_of(known, detections) for detections in found]
@@ -143,7 +144,7 @@ def balanced_score(names: Sequence[str], truth: Sequence[GroundTruth], found: Se
     The arguments are those of `evaluate`.
 
     Returns:
-        A score between 0.05 and 0.95; 0.5 where nothing was found.
+        A score between 0.05 and 0.95; 0.5 if nothing was found.
     """
     known = {name: place for place, name in enumerate(names)}
     scores: list[NDArray[np.float32]] = [np.zeros(0, np.float32)]
@@ -169,7 +170,7 @@ def balanced_score(names: Sequence[str], truth: Sequence[GroundTruth], found: Se
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """Detections with the dataset's indices of classes, the most certain first."""
+    """Detections with the dataset's class indices, the most certain first."""
 
     boxes: NDArray[np.float32]
     scores: NDArray[np.float32]
@@ -215,7 +216,7 @@ def _average_precisions(
 
 
 def _within(boxes: NDArray[np.float32], hidden: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Return the part of each box within the ignored regions, the largest over all of them."""
+    """Return the largest share of each box that is within one of the ignored regions."""
     if not len(hidden):
         return np.zeros(len(boxes))
     inner = np.minimum(boxes[:, None, 2:], hidden[None, :, 2:]) - np.maximum(boxes[:, None, :2], hidden[None, :, :2])
@@ -225,7 +226,7 @@ def _within(boxes: NDArray[np.float32], hidden: NDArray[np.float32]) -> NDArray[
 
 
 def _area(recall: NDArray[np.float64], precision: NDArray[np.float64]) -> float:
-    """Return the mean of interpolated precisions at 101 recalls."""
+    """Return the mean of the interpolated precision at 101 recall values."""
     best: NDArray[np.float64] = np.maximum.accumulate(precision[::-1])[::-1]
     places = np.searchsorted(recall, _RECALLS, side="left")
     reached = places < len(best)
@@ -233,11 +234,13 @@ def _area(recall: NDArray[np.float64], precision: NDArray[np.float64]) -> float:
 
 
 def _matches(shares: NDArray[np.float64], least: float) -> NDArray[np.int64]:
-    """Return the object matched by each detection, the most certain first, or -1; an object is matched once.
+    """Return the object that each detection matches, or -1; each object is matched once at most.
+
+    The most certain detections choose first.
 
     Args:
         shares: the overlap of each detection with each object, shape (detections, objects).
-        least: the least overlap of a correct box.
+        least: the minimum overlap of a correct box.
     """
     found: NDArray[np.int64] = np.full(len(shares), -1, np.int64)
     if shares.shape[1] == 0:
@@ -259,7 +262,7 @@ def _confusion(classes: int, truth: Sequence[GroundTruth], found: Sequence[_Foun
         hidden = objects.where(objects.ignored)
         objects = objects.where(~objects.ignored)
         shares = overlap(sure.boxes, objects.boxes)
-        # Its own class first: a correctly detected object is not confused because another box overlaps it, too.
+        # Match objects of the same class first: another overlapping box does not make a correct detection a confusion.
         same = shares * (sure.classes[:, None] == objects.classes[None])
         matches = _matches(same, _CONFUSION_OVERLAP)
         left = shares.copy()

@@ -1,1 +1,1 @@
-"""Datasets of a simulated world with exact labels, in COCO and YOLO form."""
+"""Datasets of a simulated world with exact labels, in COCO and YOLO format."""

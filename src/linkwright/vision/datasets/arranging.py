@@ -1,4 +1,4 @@
-"""Random arrangements of the camera and the objects for an image."""
+"""Arrange the camera and the objects for an image randomly."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ _ROOM = 0.12
 
 @dataclass(frozen=True)
 class Shot:
-    """The pose of a camera.
+    """A camera pose with the visible scene.
 
     Attributes:
         optics: the projection.
-        pose: the pose; the camera looks along x, with z up.
+        pose: the camera's pose; the camera looks along x, with z up.
         shown: the placed objects.
-        structures: the shapes of the surroundings.
+        structures: the geoms of the surroundings.
     """
 
     optics: Optics
@@ -72,7 +72,7 @@ class _Ground:
         return bool((np.hypot(beyond[:, 0], beyond[:, 1]) > radius).all())
 
     def is_open(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
-        """Return whether no structure is between two places."""
+        """Return whether no structure is between two points."""
         steps = np.linspace(start, end, _STEPS)[:, None] - self._middle
         beyond = np.abs(np.einsum("gji,sgj->sgi", self._axes, steps)) - self._half
         return not (beyond < 0.0).all(axis=2).any()
@@ -86,7 +86,7 @@ def arrange(stage: Stage, options: Options, generator: np.random.Generator) -> S
     """Arrange a camera and objects in a world.
 
     Args:
-        stage: the world, after `begin`.
+        stage: the world, after `Stage.begin`.
         options: the options.
         generator: the random generator.
     """
@@ -140,7 +140,7 @@ def _choose_structures(stage: Stage, generator: np.random.Generator) -> list[int
 
 
 def _camera_place(stage: Stage, ground: _Ground, generator: np.random.Generator) -> tuple[float, float, float]:
-    """Return the camera's position and the point that it looks at, with free space ahead if there is any."""
+    """Return the camera's position and the point that it looks at, with free space ahead if possible."""
     least, greatest = stage.area
     x = y = heading = 0.0
     for _ in range(_TRIES):
@@ -155,7 +155,10 @@ def _camera_place(stage: Stage, ground: _Ground, generator: np.random.Generator)
 
 
 def _chosen(stage: Stage, options: Options, generator: np.random.Generator) -> list[Prop]:
-    """Return a random choice of objects. Each class is equally likely, however many objects it has."""
+    """Return a random choice of objects.
+
+    Each class is equally likely, regardless of its number of objects.
+    """
     if generator.random() < 0.04:
         return []
     by_class: dict[int, list[Prop]] = {}
@@ -188,7 +191,7 @@ def _free_place(
     generator: np.random.Generator,
     reach: tuple[float, float],
 ) -> tuple[float, float] | None:
-    """Return a free place, most often in view of the camera; None if there is none."""
+    """Return a free place, usually in view of the camera; None if there is none."""
     x, y, heading = camera
     least, greatest = stage.area
     nearest, hidden = reach[0] + radius, generator.random() < _BEHIND
@@ -222,7 +225,7 @@ def _stand(stage: Stage, prop: Prop, place: tuple[float, float], generator: np.r
     tilted = turn[2, 2] < 1.0 - 1e-9
     across = -middle[:2] if tilted else np.zeros(2)
     height = -float(least[2])
-    if prop.is_round:  # the box around a turned ball is larger than the ball
+    if prop.is_round:  # the bounding box of a rotated ball is larger than the ball
         center = (prop.corners.min(axis=0) + prop.corners.max(axis=0)) / 2
         height = float(center[2] - (turn @ center)[2])
     stage.put(prop, np.array([place[0] + across[0], place[1] + across[1], stage.floor + height + lift]), turn)

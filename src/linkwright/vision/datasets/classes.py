@@ -1,4 +1,4 @@
-"""Classes of the objects in a world."""
+"""Assign classes to the objects in a world."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ _TOUCHING = 0.02
 
 @dataclass(frozen=True, slots=True)
 class SceneObject:
-    """An object with a label of its own.
+    """An object with its own label.
 
     Attributes:
         name: the model, or ``model::link::visual``.
         label: the index of its class.
-        geoms: the names of its shapes in MuJoCo's model.
+        geoms: the names of its geoms in MuJoCo's model.
     """
 
     name: str
@@ -53,17 +53,18 @@ class SceneObject:
 
 @dataclass(frozen=True, slots=True)
 class ClassRules:
-    """Rules that give models or visuals their classes.
+    """Rules that assign classes to models or visuals.
 
     Attributes:
-        patterns: class -> patterns of names as of files: of models, of the models that they were included from, and
-            with ``::`` in them of visuals, ``model::link::visual``. A class has its number by its place.
+        patterns: for each class, glob patterns that match names of models, or names of the models that they were
+            included from. Patterns with ``::`` match names of visuals, ``model::link::visual``. The position of a class
+            is its number.
     """
 
     patterns: Mapping[str, tuple[str, ...]]
 
     def class_of(self, *names: str) -> int | None:
-        """Return the class of the first rule that matches one of some names; None for none."""
+        """Return the number of the first class that has a pattern for one of the names; None if there is none."""
         for number, patterns in enumerate(self.patterns.values()):
             if any(fnmatchcase(name, pattern) for name in names for pattern in patterns):
                 return number
@@ -71,10 +72,12 @@ class ClassRules:
 
 
 def read_classes(path: Path) -> ClassRules:
-    """Read rules from a YAML file: ``class: pattern``, ``class: [pattern, ...]``, or ``class:`` for its own name.
+    """Read class rules from a YAML file.
+
+    An entry is ``class: pattern``, ``class: [pattern, ...]``, or ``class:``, whose pattern is the name of the class.
 
     Raises:
-        LinkwrightError: VISION201 it cannot be read, or is something else.
+        LinkwrightError: VISION201, the file cannot be read, or has other content.
     """
     document = YamlDocument(read_source(path, phrase("file of classes"), "VISION201"), "VISION201")
     root = document.root
@@ -104,9 +107,9 @@ def usual_class(name: str) -> str:
 
 
 def usual_rules(simulations: list[Simulation]) -> ClassRules:
-    """Return the default classes of worlds, sorted by name: all models but surroundings.
+    """Return default classes for worlds, sorted by name: all models except surroundings.
 
-    An included model is named by its file.
+    An included model has the name in its own file.
     """
     patterns: dict[str, set[str]] = {}
     for simulation in simulations:
@@ -119,7 +122,7 @@ def usual_rules(simulations: list[Simulation]) -> ClassRules:
 def objects_of(simulation: Simulation, rules: ClassRules) -> list[SceneObject]:
     """Return the objects of a world.
 
-    A model is one object. If the rules name visuals of a model, the named visuals that touch each other are one object.
+    A model is one object. If the rules name visuals of a model, named visuals that touch each other are one object.
     """
     objects: list[SceneObject] = []
     visuals = _visuals(simulation)
@@ -157,7 +160,7 @@ def geom_boxes(model: Any, data: Any) -> Array:
 
 
 def _visuals(simulation: Simulation) -> dict[str, dict[str, list[str]]]:
-    """Return the visuals of each model by name, and the geoms of each visual."""
+    """Return the geoms of each visual by name, for each model."""
     found: dict[str, dict[str, list[str]]] = {}
     for geom in range(simulation.model.ngeom):
         if simulation.model.geom_group[geom] == VISUAL_GROUP:
@@ -182,7 +185,7 @@ def _is_background(simulation: Simulation, name: str, model: Model) -> bool:
 
 
 def _touching(parts: list[str], geoms: Mapping[str, list[str]], model: Any, boxes: Array) -> Iterator[list[str]]:
-    """Return groups of visuals whose bounding boxes touch each other."""
+    """Yield groups of visuals whose bounding boxes touch each other."""
     left = list(parts)
     around = {part: boxes[[model.geom(geom).id for geom in geoms[part]]] for part in parts}
     around = {part: np.stack([each[:, 0].min(axis=0), each[:, 1].max(axis=0)]) for part, each in around.items()}

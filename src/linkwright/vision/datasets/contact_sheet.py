@@ -1,4 +1,4 @@
-"""A contact sheet: small images with their boxes."""
+"""A contact sheet of small images with their boxes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _IGNORED = "#808080"
 def contact_sheet(images: Sequence[LabelledImage], classes: Sequence[str]) -> bytes:
     """Return a JPEG of the first `MOST` images, with the class and the visible box of each object.
 
-    Objects that are too little visible for a label have grey boxes.
+    Objects of which too little is visible for a label have grey boxes.
     """
     from PIL import Image, ImageDraw
 

@@ -1,4 +1,4 @@
-"""Making a dataset in one or several processes, and writing it."""
+"""Create a dataset in one or several processes, and write it."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from linkwright.vision.datasets.workers import make_in_processes
 
 @dataclass(frozen=True, slots=True)
 class DatasetResult:
-    """The result of making a dataset.
+    """The result of creating a dataset.
 
     Attributes:
-        folder: the dataset.
+        folder: the folder of the dataset.
         added: the number of images made.
         interrupted: whether Ctrl-C ended it early.
     """
@@ -106,7 +106,7 @@ def make_dataset(
 
 
 def _each(taking: Iterator[LabelledImage]) -> Iterator[LabelledImage]:
-    """Iterate images, and close their source at the end."""
+    """Yield images from an iterator, and close the iterator at the end."""
     try:
         yield from taking
     finally:

@@ -1,6 +1,6 @@
 """The folder of a dataset: images, labels for COCO and YOLO, and the card.
 
-Source of the forms: "Data format" of cocodataset.org, and the chapter "Object detection datasets" of Ultralytics.
+Sources of the formats: "Data format" of cocodataset.org, and the chapter "Object detection datasets" of Ultralytics.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ _FILES = (CARD, "data.yaml", SHEET)
 
 
 class DatasetFolder:
-    """A dataset on the disk. It is complete after `finish`, even if it was interrupted.
+    """A dataset on disk. It is complete after `finish`, even if it was interrupted.
 
     Args:
         path: the folder.
         classes: the names of the classes.
         size: width and height of images in pixels.
-        formats: ``coco``, ``yolo``.
+        formats: the label formats, ``coco`` and ``yolo``.
         form: the image format, ``jpg`` or ``png``.
 
     Attributes:
@@ -89,10 +89,10 @@ class DatasetFolder:
             raise cannot_write(self.path, error) from None
 
     def add(self, taken: LabelledImage) -> None:
-        """Write an image and its labels, both or neither.
+        """Write an image and its labels, either both or neither.
 
         Raises:
-            OSError: it cannot be written.
+            OSError: they cannot be written.
         """
         name = f"{taken.index:06d}"
         image = self.path / "images" / taken.split / f"{name}.{self._form}"
@@ -109,10 +109,10 @@ class DatasetFolder:
         self._annotations[taken.split] += _coco(taken, width, height)
 
     def finish(self, card: Mapping[str, Any]) -> None:
-        """Write the lists of all images and the card. If the disk is full, drop the last images.
+        """Write the COCO annotations of all images and the card. If the disk is full, drop the last images.
 
         Args:
-            card: the source of the images of this run.
+            card: the entry that describes how the images of this run were made.
 
         Raises:
             LinkwrightError: VISION207, the card cannot be written.
@@ -180,7 +180,7 @@ class DatasetFolder:
         return "\n".join(lines) + "\n"
 
     def _read_existing(self) -> None:
-        """Read an existing dataset."""
+        """Load the card and the labels of an existing dataset."""
         shown = display_path(self.path)
         try:
             card = json.loads((self.path / CARD).read_text(encoding="utf-8"))
@@ -219,7 +219,7 @@ class DatasetFolder:
             self._annotations[split] = [entry for entry in self._annotations[split] if entry["image_id"] not in gone]
 
     def _remove(self) -> None:
-        """Remove the files of a dataset, and leave everything else."""
+        """Remove the files of a dataset, and leave all other files."""
         for part in _PARTS:
             shutil.rmtree(self.path / part, ignore_errors=True)
         _remove([self.path / name for name in _FILES])

@@ -1,4 +1,4 @@
-"""Labels of an image from its exact segmentation."""
+"""Compute the labels of an image from its exact segmentation."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ class Label:
     Attributes:
         label: the index of its class.
         box: the box around its visible part, in pixels of the image.
-        whole: the box around all of it, without occlusion; may reach beyond the image.
+        whole: the box around the whole object, without occlusion; may reach beyond the image.
         area: the number of its visible pixels.
-        visibility: the share of its pixels that are visible, of those without occlusion and truncation.
-        truncated: whether it reaches beyond the image.
-        ignored: whether too little of it is visible to be found.
-        counts: the runs of its mask, down the columns: pixels outside, inside, outside ...
+        visibility: the visible share of the pixels that the object would have without occlusion and truncation.
+        truncated: whether the object reaches beyond the image.
+        ignored: whether too little of the object is visible to be found.
+        counts: the run lengths of its mask, column by column, alternately outside and inside, beginning with outside.
     """
 
     label: int
@@ -58,7 +58,7 @@ def label_image(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, least_
             shape.
         least_visible: the visible share of an object, and of its largest shape, below which it is ignored.
     """
-    numbers = np.zeros(stage.simulation.model.ngeom + 1, dtype=np.uint8)  # the last is for nothing
+    numbers = np.zeros(stage.simulation.model.ngeom + 1, dtype=np.uint8)  # the last is for geom -1: none
     for number, prop in enumerate(shot.shown, start=1):
         numbers[prop.geoms] = number
     objects = numbers[geoms]
@@ -82,7 +82,7 @@ def label_image(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, least_
 
 
 def box_of(mask: Any) -> Box | None:
-    """Return the bounding box of a mask of shape (height, width); None for an empty one."""
+    """Return the bounding box of a mask of shape (height, width); None for an empty mask."""
     rows = np.flatnonzero(mask.any(axis=1))
     if not len(rows):
         return None
@@ -98,7 +98,7 @@ def _side_of(mask: Any) -> int:
 
 
 def runs_of(mask: Any) -> tuple[int, ...]:
-    """Encode a mask by columns, beginning with false pixels: COCO's uncompressed run lengths."""
+    """Return a mask as COCO's uncompressed run lengths, by columns, beginning with false pixels."""
     flat = mask.ravel(order="F")
     changes = np.flatnonzero(flat[1:] != flat[:-1]) + 1
     ends = [0, *changes.tolist(), len(flat)]
@@ -107,9 +107,10 @@ def runs_of(mask: Any) -> tuple[int, ...]:
 
 
 def _uncovered(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box, int, int]:
-    """Return the unoccluded, untruncated box of an object, its number of pixels, and that of its largest shape.
+    """Return an object's full box, its pixel count, and the pixel count of its largest geom.
 
-    An object that is larger than the image is rendered smaller, so its box is accurate to a few pixels only.
+    Occlusion and truncation are disregarded. An object that is larger than the image is rendered smaller, so its box is
+    accurate only to a few pixels.
     """
     left, top, right, bottom = _window(stage, shot, prop, visible)
     optics = shot.optics
@@ -133,7 +134,7 @@ def _uncovered(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box,
 
 
 def _window(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:
-    """Return the part of the image plane that contains an object, with a margin, up to a limit."""
+    """Return the part of the image plane that contains an object and a margin, up to a maximum size."""
     optics, data, model = shot.optics, stage.simulation.data, stage.simulation.model
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     local = model.geom_aabb[prop.geoms, None, :3] + signs * model.geom_aabb[prop.geoms, None, 3:]

@@ -1,4 +1,4 @@
-"""Randomised appearance: lights, colours and patterns, backdrop, and camera effects."""
+"""Randomise the appearance: lights, colours and patterns, backdrop, and camera effects."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ _POOL = 1 << 21
 
 
 def light(stage: Stage, generator: np.random.Generator) -> None:
-    """Light a world by one to three random lights.
+    """Replace the lights of a world by one to three random lights.
 
-    All are distant: OpenGL's light of an infinite plane by a near one depends on the previous frame.
+    All are directional: when OpenGL lights an infinite plane with a near light, the result depends on the previous
+    frame.
     """
     lights = []
     for number in range(int(generator.integers(1, 4))):
@@ -36,7 +37,7 @@ def light(stage: Stage, generator: np.random.Generator) -> None:
 
 
 def paint(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
-    """Recolour everything; objects keep their colour, or a similar one, more often than not."""
+    """Recolour everything; most objects keep their colour or get a similar one."""
     for prop in shot.shown:
         way, groups = generator.random(), {}
         textured = generator.random() < 0.3
@@ -60,7 +61,7 @@ def paint(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
 
 
 def backdrop(colour: Pixels, geoms: Any, generator: np.random.Generator) -> None:
-    """Put a random backdrop, a gradient with clouds, where an image shows nothing."""
+    """Fill the empty parts of an image with a random backdrop: a gradient with clouds."""
     nothing = geoms < 0
     if not nothing.any():
         return
@@ -77,7 +78,7 @@ def backdrop(colour: Pixels, geoms: Any, generator: np.random.Generator) -> None
 
 
 class Camera:
-    """Effects of a lens and a sensor: exposure, white balance, blur, noise."""
+    """The effects of a lens and a sensor: exposure, white balance, blur, noise."""
 
     def __init__(self) -> None:
         self._noise = np.random.default_rng(0).standard_normal(_POOL, dtype=np.float32)
@@ -114,7 +115,7 @@ def _tinted(generator: np.random.Generator, most: float) -> Array:
 
 
 def _recoloured(own: tuple[float, ...], way: float, generator: np.random.Generator) -> Array:
-    """Return a colour for an object: its own, one of the same hue, or any."""
+    """Return a colour for an object: its own, one with a similar hue, or a random one."""
     hue, saturation, value = colorsys.rgb_to_hsv(*own)
     if way < 0.45:
         return np.array(own)

@@ -1,4 +1,4 @@
-"""Making single images with their labels."""
+"""Make single images with their labels."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ class Source:
 
     Attributes:
         worlds: the files of worlds, or their names.
-        added: the files of robots or models to put into each world.
-        classes: the file of classes; None for a class for each model.
+        added: the files of robots or models to add to each world.
+        classes: the file of class rules; None for one class per model.
         options: the options of making images.
     """
 
@@ -55,7 +55,7 @@ class LabelledImage:
     Attributes:
         index: the number of the image.
         split: ``train``, ``val`` or ``test``.
-        data: the content of the file.
+        data: the encoded image file.
         labels: the labels of its objects.
     """
 
@@ -66,7 +66,7 @@ class LabelledImage:
 
 
 class Studio:
-    """Makes the images of a dataset; each depends on its number and the seed alone.
+    """Makes the images of a dataset; each image depends only on its number and the seed.
 
     Args:
         source: the worlds and options.
@@ -151,7 +151,7 @@ class Studio:
 
 
 def split_of(index: int, options: Options) -> str:
-    """Return the split of an image. Each twenty consecutive images have the shares of the splits."""
+    """Return the split of an image. The shares of the splits hold for every twenty consecutive images."""
     block, place = divmod(index, _BLOCK)
     order = np.random.default_rng((options.seed, _SPLIT, block)).permutation(_BLOCK)
     share = (int(order[place]) + 0.5) / _BLOCK
@@ -176,7 +176,7 @@ def _model_of(path: Path) -> Model:
 
 
 def _share(simulations: Sequence[Simulation], rules: ClassRules) -> None:
-    """Add the objects of each world to the others, if they are whole models."""
+    """Add the labelled models of each world to all other worlds."""
     everything = [dict(simulation.scene.models) for simulation in simulations]
     for simulation in simulations:
         kinds = {own_name(held.model) for held in simulation.scene.models.values()}
@@ -190,7 +190,7 @@ def _share(simulations: Sequence[Simulation], rules: ClassRules) -> None:
 
 
 def _is_labelled(name: str, model: Model, rules: ClassRules) -> bool:
-    """Return whether a model, or each visual of it, has a class."""
+    """Return whether a model, or each of its visuals, has a class."""
     if rules.class_of(name, own_name(model)) is not None:
         return True
     parts = [f"{name}::{link.name}::{visual.name}" for link in model.links for visual in link.visuals]

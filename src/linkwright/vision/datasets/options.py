@@ -1,4 +1,4 @@
-"""Options of a dataset."""
+"""The options of a dataset."""
 
 from __future__ import annotations
 
@@ -11,20 +11,19 @@ FORMATS = ("coco", "yolo")
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """Options of making images.
+    """The options of making images.
 
     Attributes:
         width, height: the size of images, in pixels.
         seed: the random seed; the same seed gives the same bytes.
         splits: the shares of train, val and test.
-        copies: the least number of objects of each class.
+        copies: the minimum number of objects of each class.
         distractors: the number of objects without a label.
-        most: the largest number of objects placed in an image.
-        kept: which of ``lights``, ``colours`` (with patterns) and ``lens`` (with sensor) stay as the world has them.
-        least_size: the shorter side of a box in pixels, below which an object is ignored; half of it for its largest
-            shape.
-        least_visible: the share of an object that is visible, and that of its largest shape, below which it is to be
-            ignored.
+        most: the maximum number of objects placed in an image.
+        kept: which of ``lights``, ``colours`` (with patterns) and ``lens`` (with sensor) are not randomised.
+        least_size: the minimum length in pixels of a box's shorter side; smaller objects are ignored. For an object's
+            largest geom half of it is enough.
+        least_visible: the minimum visible share of an object and of its largest geom; less visible objects are ignored.
         form: the image format, ``jpg`` or ``png``.
     """
 

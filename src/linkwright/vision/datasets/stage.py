@@ -1,4 +1,4 @@
-"""A world whose objects are moved, coloured and lit for each image without compiling MuJoCo's model again."""
+"""A world whose objects are moved, coloured and lit for each image without recompiling MuJoCo's model."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ class Prop:
     Attributes:
         name: the name of the object.
         label: the index of its class, -1 for none.
-        geoms: its shapes in MuJoCo's model.
-        main: the largest of them: the one whose box has the largest side.
-        positions: of its shapes, from the middle of its base: shape (n, 3), in m.
-        turns: their axes: shape (n, 3, 3).
-        corners: the corners of boxes around its shapes, from the middle of its base: shape (n * 8, 3).
-        radius: of a circle around its base, in m.
+        geoms: its geoms in MuJoCo's model.
+        main: its largest geom: the one whose box has the longest side.
+        positions: the positions of its geoms, relative to the centre of its base: shape (n, 3), in m.
+        turns: the axes of its geoms: shape (n, 3, 3).
+        corners: the corners of the boxes around its geoms, relative to the centre of its base: shape (n * 8, 3).
+        radius: the radius of a circle around its base, in m.
         is_round: whether it has no upper side.
     """
 
@@ -62,7 +62,7 @@ class Stage:
     Args:
         simulation: the world, which the stage copies.
         objects: the objects to label.
-        copies: the least number of objects of each class.
+        copies: the minimum number of objects of each class.
         distractors: the number of objects without a label.
 
     Attributes:
@@ -70,9 +70,9 @@ class Stage:
         renderer: renders its images.
         props: the objects and their copies.
         distractors: objects without a label.
-        ground: the flat shapes, which are always visible.
-        structures: the other shapes of each model of the surroundings.
-        area: the area for objects: least and greatest x and y in m, shape (2, 2).
+        ground: the flat geoms, which are always visible.
+        structures: the other geoms of each model of the surroundings.
+        area: the area for objects: minimum and maximum x and y in m, shape (2, 2).
         floor: the height of the ground below the objects, in m.
     """
 
@@ -136,7 +136,7 @@ class Stage:
 
         Args:
             prop: the object.
-            position: of the middle of its base, in m.
+            position: the position for the centre of its base, in m.
             turn: its axes, shape (3, 3).
         """
         data = self.simulation.data
@@ -171,21 +171,21 @@ class Stage:
         data.geom_xmat[geom] = turn.reshape(9)
 
     def colour_of(self, geom: int) -> Any:
-        """Return the colour of a geom in the world: red, green, blue and opacity."""
+        """Return the colour of a geom in the original world: red, green, blue and opacity."""
         return self._colours[geom]
 
     def has_image(self, geom: int) -> bool:
-        """Return whether a geom has a texture of its own."""
+        """Return whether a geom has its own material."""
         return bool(self._materials[geom] >= 0)
 
     def paint(self, geom: int, colour: Array, kind: str = "", number: int = 0) -> None:
         """Set the colour and the pattern of a geom.
 
         Args:
-            geom: the shape.
+            geom: the geom.
             colour: red, green and blue.
             kind: ``object``, ``wall`` or ``ground`` for a pattern; empty for none.
-            number: which of the patterns.
+            number: selects one of the patterns.
         """
         model = self.simulation.model
         model.geom_rgba[geom, :3] = colour
@@ -204,7 +204,7 @@ class Stage:
         self.simulation.world = replace(self._own, lights=tuple(lights), models=(), scene=scene)
 
     def set_patterns(self, generator: np.random.Generator) -> None:
-        """Replace all patterns; the next image takes longer."""
+        """Replace all patterns. The next image takes longer."""
         model = self.simulation.model
         for kind, size in _SIZES.items():
             for number in range(_PATTERNS):
@@ -218,7 +218,7 @@ class Stage:
         self.begin()
         self.simulation.world = self._own
         self.renderer.close()
-        self.renderer = make_renderer(self.simulation)  # images depend on nothing that was drawn before
+        self.renderer = make_renderer(self.simulation)  # a new renderer, so that images do not depend on earlier ones
 
     def close(self) -> None:
         """Release the renderer."""

@@ -1,4 +1,4 @@
-"""Statistics of a dataset: numbers, sizes, positions and visible parts by class."""
+"""Statistics of a dataset by class: numbers, sizes, positions and visible shares."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class ClassStatistics:
 
     Attributes:
         objects: the number of labelled objects.
-        images: the number of images with one.
-        ignored: the number of objects that are too little visible for a label.
-        small, medium, large: objects by COCO's sizes.
-        hidden: objects that are less than three quarters visible.
-        truncated: objects that reach beyond their image.
+        images: the number of images with at least one.
+        ignored: the number of objects of which too little is visible for a label.
+        small, medium, large: the number of objects by COCO's size ranges.
+        hidden: the number of objects that are less than three quarters visible.
+        truncated: the number of objects that reach beyond their image.
         thirds: the number of objects with their centre in each ninth of the image, row by row.
     """
 
@@ -41,12 +41,12 @@ class ClassStatistics:
 def statistics_of(
     classes: Sequence[str], size: tuple[int, int], annotations: Iterable[Mapping[str, Any]]
 ) -> dict[str, ClassStatistics]:
-    """Compute the statistics of each class.
+    """Return the statistics of each class.
 
     Args:
-        classes: their names.
+        classes: the names of the classes.
         size: width and height of images in pixels.
-        annotations: of all images, in COCO's form.
+        annotations: the annotations of all images, in COCO's format.
     """
     found = {name: ClassStatistics() for name in classes}
     images: dict[str, set[int]] = {name: set() for name in classes}

@@ -15,11 +15,11 @@ def pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
 
     Args:
         generator: the random generator.
-        size: in pixels.
-        soft: whether it is light grey all over, so that what it covers keeps its colour; else it has two colours.
+        size: the side of the square in pixels.
+        soft: whether it is light grey all over, so that the surface keeps its colour; otherwise it has two colours.
 
     Returns:
-        Red, green, blue: shape (size, size, 3).
+        RGB, shape (size, size, 3).
     """
     kind = generator.integers(5)
     if kind == 0:

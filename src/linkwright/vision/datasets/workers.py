@@ -1,4 +1,4 @@
-"""Processes that make images in parallel."""
+"""Worker processes that make images in parallel."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _PATIENCE = 10.0
 
 
 def make_in_processes(source: Source, numbers: range, workers: int) -> Iterator[LabelledImage]:
-    """Make images in several processes.
+    """Yield images that several processes make.
 
     Args:
         source: the worlds and options.
@@ -31,7 +31,7 @@ def make_in_processes(source: Source, numbers: range, workers: int) -> Iterator[
         The images, in the order of completion.
 
     Raises:
-        LinkwrightError: VISION208 a process has died.
+        LinkwrightError: VISION208, a process has died.
     """
     waiting = deque(_chapters(numbers))
     started: list[_Worker] = []
@@ -58,7 +58,7 @@ def make_in_processes(source: Source, numbers: range, workers: int) -> Iterator[
 
 
 def _chapters(numbers: range) -> Iterator[range]:
-    """Yield the numbers of images in ranges that share their patterns."""
+    """Yield ranges of image numbers that share their patterns."""
     start = numbers.start
     while start < numbers.stop:
         end = min((start // CHAPTER + 1) * CHAPTER, numbers.stop)
@@ -72,7 +72,7 @@ class _Worker:
         self.connection, theirs = spawn.Pipe()
         self.left = 0
         self._process = spawn.Process(target=_serve, args=(source, theirs), daemon=True)
-        before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles Ctrl-C
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # inherited: only the parent handles Ctrl-C
         try:
             self._process.start()
         finally:
@@ -80,16 +80,16 @@ class _Worker:
         theirs.close()
 
     def assign(self, numbers: range) -> None:
-        """Assign numbers of images."""
+        """Send the process the numbers of the images to make next."""
         self.left = len(numbers)
-        with suppress(OSError):  # it has died, which `result` reports
+        with suppress(OSError):  # the process has died, which `result` reports
             self.connection.send(numbers)
 
     def result(self) -> LabelledImage:
         """Return the next image.
 
         Raises:
-            LinkwrightError: the error of the process; VISION208 it has died.
+            LinkwrightError: the error that the process reports, or VISION208 if it has died.
         """
         try:
             reply = self.connection.recv()

@@ -1,1 +1,1 @@
-"""Detectors: networks in ONNX files, and those of OpenCV without a network."""
+"""Detectors: networks in ONNX and TFLite files, and OpenCV detectors without a network."""

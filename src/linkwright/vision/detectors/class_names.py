@@ -1,4 +1,4 @@
-"""Names of classes, from a model's metadata or a file of labels."""
+"""Read class names from a model's metadata or from a label file."""
 
 from __future__ import annotations
 
@@ -32,19 +32,19 @@ def names_in_metadata(text: str) -> tuple[str, ...] | None:
 
 
 def read_labels(path: Path) -> tuple[str, ...]:
-    """Read the class names of a file, in order.
+    """Read the class names in a file, in order.
 
     Args:
-        path: a text with a name in each line; or YAML or JSON (by its ending) with a list, a mapping from numbers to
-            names, or one of these below ``names``, as in the data files of YOLO.
+        path: a text file with one name per line; or a YAML or JSON file (by its suffix) with a list, a mapping from
+            numbers to names, or either of them below ``names``, as in the data files of YOLO.
 
     Raises:
-        LinkwrightError: VISION108 it cannot be read, or has another form.
+        LinkwrightError: VISION108, the file cannot be read or has another format.
     """
     try:
         text = read_text(path, "utf-8-sig")
         if path.suffix.lower() in (".yaml", ".yml", ".json"):
-            document = yaml.safe_load(text)  # JSON is YAML
+            document = yaml.safe_load(text)  # every JSON file is also YAML
         else:
             document = [line.strip() for line in text.splitlines() if line.strip()]
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:

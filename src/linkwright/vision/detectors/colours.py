@@ -1,4 +1,4 @@
-"""The detector ``colours``: patches of one colour, by their hue, saturation and value."""
+"""The detector ``colours``, which finds patches of one colour by hue, saturation and value."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ COLOURS: Mapping[str, tuple[int, ...]] = {
 
 
 class ColourDetector(Detector):
-    """Boxes around patches of a colour; the score is the filled part of the box, 0.79 for a ball.
+    """Detects patches of a colour; the score is the filled share of the box, 0.79 for a ball.
 
     Settings:
         ``colours``
-            a mapping from names to six numbers, see `hsv_range`; where the least hue is more than the largest, the
-            range goes through 0, as red does. `COLOURS` unless it is given.
+            a mapping from names to six numbers, see `hsv_range`. If the minimum hue exceeds the maximum, the range
+            wraps around through 0, as red does. The default is `COLOURS`.
         ``least_area``
-            of a patch, in pixels; 150 unless it is given.
+            the minimum area of a patch, in pixels; 150 by default.
 
     Raises:
         LinkwrightError: VISION101 OpenCV is missing, VISION109 a setting is wrong.
@@ -57,7 +57,7 @@ class ColourDetector(Detector):
 
     @property
     def notes(self) -> tuple[Phrase, ...]:
-        """A remark that it needs no GPU, if it was given one."""
+        """A remark that the detector does not need a GPU, if one was requested."""
         return self._notes
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
@@ -69,7 +69,7 @@ class ColourDetector(Detector):
         hsv = cv2.cvtColor(image, cv2.COLOR_RGB2HSV) if image.size else image
         for index, bounds in enumerate(self._ranges.values() if image.size else ()):
             mask = mask_of(hsv, bounds)
-            x, y, columns, rows = cv2.boundingRect(mask)  # most colours are nowhere, or in a small part of the image
+            x, y, columns, rows = cv2.boundingRect(mask)  # most colours are absent or in a small part of the image
             if columns * rows < self._least_area:
                 continue
             part = mask[y : y + rows, x : x + columns]
@@ -83,7 +83,9 @@ class ColourDetector(Detector):
 
 
 def mask_of(hsv: NDArray[np.uint8], bounds: tuple[int, ...]) -> NDArray[np.uint8]:
-    """Return a mask of a colour: 255 where an image has it, else 0. Spots smaller than three pixels are left out.
+    """Return the mask of a colour: 255 where the image has it, else 0, without specks.
+
+    Spots narrower than three pixels are removed.
 
     Args:
         hsv: shape ``(height, width, 3)``.

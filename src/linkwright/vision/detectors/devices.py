@@ -1,4 +1,4 @@
-"""Devices of networks, and refusing networks' options for detectors without one."""
+"""Parse devices of networks, and refuse network options for detectors without a network."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ _GPU = re.compile(r"(?:cuda(?::(\d+))?|(\d+))$")
 
 
 def gpu_of(device: str) -> str | None:
-    """Return the number of a device's GPU; None for the CPU.
+    """Return the GPU number of a device; None for the CPU.
 
     Args:
         device: ``cpu``, ``cuda``, ``cuda:0``, ``0``.
 
     Raises:
-        LinkwrightError: VISION109, there is no such device.
+        LinkwrightError: VISION109, the device is unknown.
     """
     if device.lower() in ("", "cpu"):
         return None
@@ -29,13 +29,13 @@ def gpu_of(device: str) -> str | None:
 
 
 def without_network(options: DetectorOptions) -> tuple[Phrase, ...]:
-    """Check that a detector without a network gets no options of networks.
+    """Check that a detector without a network gets no network options.
 
     Returns:
-        Notes to log once: that it needs no GPU, if one was requested.
+        Notes to log once: that it does not need a GPU, if one was requested.
 
     Raises:
-        LinkwrightError: VISION109, it is given labels or the size of an input, or there is no such device.
+        LinkwrightError: VISION109, labels or an input size were given, or the device is unknown.
     """
     given = {"labels": options.labels, "imgsz": options.size and "x".join(map(str, options.size[::-1]))}
     for name, value in given.items():

@@ -1,4 +1,4 @@
-"""Drawing detections into images."""
+"""Draw detections into images."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def drawn(image: NDArray[np.uint8], found: Detections) -> NDArray[np.uint8]:
     thick = max(1, round(image.shape[0] / 300))
     tall = max(_LEAST_TEXT, round(_TEXT_SHARE * image.shape[0]))
     scale, stroke = cv2.getFontScaleFromHeight(cv2.FONT_HERSHEY_SIMPLEX, tall), max(1, round(tall / 10))
-    for index in reversed(range(len(found))):  # the most certain last, so that nothing is drawn over it
+    for index in reversed(range(len(found))):  # draw the most certain last, so that no other covers it
         name = found.name(index)
         colour = colour_of(name)
         left, top, right, bottom = (int(edge) for edge in np.rint(found.boxes[index]))

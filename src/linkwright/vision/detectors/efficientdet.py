@@ -1,4 +1,4 @@
-"""EfficientDet-Lite in TFLite files, whose outputs are final boxes."""
+"""EfficientDet-Lite networks in TFLite files, whose outputs are final boxes."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ _MOST_THREADS = 4
 
 
 class EfficientDetDetector(Detector):
-    """Runs a network with LiteRT; the names of its classes are in a zip archive at the end of the file.
+    """Runs a network with LiteRT. The class names are in a zip archive at the end of the file.
 
     Args:
         file: the TFLite file.
-        options: labels count.
+        options: the options; only the labels are used.
 
     Raises:
         LinkwrightError: VISION101 LiteRT or OpenCV is missing, VISION103 the file cannot be loaded, VISION105 its input
-            is not an image of 8 bits, VISION106 it has no final boxes, VISION108 it has no names and none are given.
+            is not an 8-bit image, VISION106 it has no final boxes, VISION108 it has no names and none are given.
     """
 
     def __init__(self, file: Path, options: DetectorOptions) -> None:
@@ -86,7 +86,10 @@ class EfficientDetDetector(Detector):
 
 
 def _final_outputs(file: Path, interpreter: Any) -> list[int]:
-    """Return the tensors of boxes, classes, scores and their number; files differ in order and names of outputs."""
+    """Return the tensor indices of boxes, classes, scores and count.
+
+    Files differ in the order and the names of their outputs.
+    """
     last = [
         get_ops_detail for get_ops_detail in interpreter._get_ops_details() if get_ops_detail["op_name"] == _LAST_STEP
     ]

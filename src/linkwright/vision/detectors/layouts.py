@@ -1,13 +1,13 @@
-"""Layouts of the outputs of YOLO networks, by their shapes and metadata.
+"""Determine the output layout of YOLO networks from shapes and metadata.
 
-Three forms exist. Networks since v8, and YOLOv5 as exported by Ultralytics' newer program (``yolov5u``), have a column
-for each place of the image: centre, size and a score for each class. The classic YOLOv5 has a row for each place with
-one number more, how likely there is an object at all. Networks that were exported with ``nms=True``, and YOLO26 with
-``end2end``, give up to 300 rows that are final: corners, score, class. Segmentation adds coefficients of masks behind
-the scores, and pose estimation key points.
+Three layouts exist. Networks since v8, and YOLOv5 as exported by Ultralytics' newer program (``yolov5u``), have a
+column for each place of the image: centre, size and a score for each class. The classic YOLOv5 has a row for each place
+with one more number, the probability that there is an object at all. Networks that were exported with ``nms=True``, and
+YOLO26 with ``end2end``, output up to 300 final rows: corners, score, class. Segmentation adds mask coefficients after
+the scores, and pose estimation adds keypoints.
 
-Others have shapes like these and mean something else: YOLOX has one row for each place, not decoded, and RT-DETR 300
-rows of shares of the image. Other numbers of rows than three for each place are not supported.
+Other networks have similar shapes with a different meaning: YOLOX has one row for each place, not decoded, and RT-DETR
+has 300 rows of fractions of the image. Only three rows per place are supported.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _CORNERS_OF_CENTRES = np.array([[1, 0, -0.5, 0], [0, 1, 0, -0.5], [1, 0, 0.5, 0]
 
 
 class Form(Enum):
-    """The position of a box's numbers in the output."""
+    """The arrangement of a box's numbers in the output."""
 
     COLUMNS = "xywh and scores in columns"
     ROWS = "xywh, objectness and scores in rows"
@@ -60,9 +60,9 @@ class Layout:
     """The layout of a network's first output.
 
     Attributes:
-        form: the order of the numbers.
+        form: the arrangement of the numbers.
         classes: the number of classes; 0 if the outputs do not determine it, as with final boxes.
-        left_out: the further outputs for each box: ``masks``, ``key points`` or nothing.
+        left_out: the kind of additional outputs for each box, which are ignored: ``masks``, ``key points`` or empty.
     """
 
     form: Form
@@ -70,11 +70,11 @@ class Layout:
     left_out: str = ""
 
     def candidates(self, output: NDArray[np.float32], threshold: float) -> Candidates:
-        """Return the boxes with at least some score; unless the layout is final, several are of one object.
+        """Return the boxes with a minimum score; unless the layout is final, an object has several boxes.
 
         Args:
             output: shape ``(1, a, b)``.
-            threshold: the least score.
+            threshold: the minimum score.
         """
         numbers = output[0]
         if self.form is Form.FINAL:
@@ -105,19 +105,19 @@ def find_layout(
     labels: int | None,
     labels_file: Path | None = None,
 ) -> Layout:
-    """Find the layout of a network's outputs.
+    """Return the layout of a network's outputs.
 
     Args:
-        shapes: of its outputs, for one image.
+        shapes: the shapes of its outputs, for one image.
         size: height and width of that image.
-        metadata: of its file.
-        file: for messages.
-        labels: how many names a file of labels has, if there is one; it counts more than the metadata.
-        labels_file: that file, for messages.
+        metadata: the metadata of its file.
+        file: the network's file, for messages.
+        labels: the number of names in the label file, if there is one; takes precedence over the metadata.
+        labels_file: the label file, for messages.
 
     Raises:
-        LinkwrightError: VISION106 it finds something else than boxes, or lays them out in no way that is known;
-            VISION107 it has another number of classes than names.
+        LinkwrightError: VISION106 the network does not output boxes, or its layout is unknown; VISION107 the numbers of
+            classes and names differ.
     """
     if metadata.task not in _BOXES:
         message = phrase(
@@ -145,13 +145,13 @@ def find_layout(
 
 
 def wrong_number(file: Path, classes: int, named: int, labels: Path | None) -> LinkwrightError:
-    """Return the error for a number of names other than that of a network's classes: VISION107.
+    """Return the error VISION107: the numbers of names and of the network's classes differ.
 
     Args:
-        file: of the network.
-        classes: that it has.
-        named: how many names there are.
-        labels: the file with the names; None where they are in the file of the network.
+        file: the file of the network.
+        classes: the number of its classes.
+        named: the number of names.
+        labels: the file with the names; None if they are in the file of the network.
     """
     if labels is None:
         message = phrase(
@@ -172,7 +172,7 @@ def wrong_number(file: Path, classes: int, named: int, labels: Path | None) -> L
 
 
 def _more_numbers(shapes: Sequence[Sequence[int]], metadata: Metadata) -> tuple[int, str]:
-    """Return the number of values behind a box's scores, and their task."""
+    """Return the number of values after a box's scores, and the task that they belong to."""
     if metadata.task == "pose":
         return metadata.key_numbers, "pose"
     masks = next((shape[1] for shape in shapes[1:] if len(shape) == 4), 0)
@@ -182,7 +182,7 @@ def _more_numbers(shapes: Sequence[Sequence[int]], metadata: Metadata) -> tuple[
 
 
 def _possible(shape: Sequence[int], size: tuple[int, int], more: int, *, suppressed: bool) -> list[tuple[Form, int]]:
-    """Return the possible forms of an output of a shape, the likeliest first, with their numbers of classes."""
+    """Return the forms that an output's shape allows, likeliest first, with their numbers of classes."""
     batch, first, second = shape
     if batch != 1:
         return []

@@ -1,7 +1,7 @@
-"""Letterbox: an image scaled into the input of a network, with grey borders.
+"""Letterboxing: scale an image into the input of a network, with grey borders.
 
-As Ultralytics does it (`LetterBox`, `scale_boxes`): one scale for both directions, linear interpolation, the image in
-the middle, `GREY` around it. An input of any size is made no larger than it has to be for its stride.
+It works as in Ultralytics (`LetterBox`, `scale_boxes`): one scale for both directions, linear interpolation, the image
+in the middle, and `GREY` around it. If the network takes any size, the input is only as large as its stride requires.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ class Letterbox:
 
     Attributes:
         width: the width of the image, in pixels.
-        height: the height of the image.
-        scale: the pixels of the input for one of the image, across and down; they differ by rounding.
-        left: the left edge of the image in the input, in its pixels.
-        top: the top edge of the image.
+        height: the height of the image, in pixels.
+        scale: input pixels per image pixel, horizontally and vertically; they differ only by rounding.
+        left: the left edge of the image in the input, in input pixels.
+        top: the top edge of the image in the input, in input pixels.
     """
 
     width: int
@@ -36,7 +36,7 @@ class Letterbox:
     top: int
 
     def boxes_in_image(self, boxes: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Convert boxes of the input, shape ``(n, 4)``, to pixels of the image, clipped to it."""
+        """Convert boxes from input to image pixels, shape ``(n, 4)``, clipped to the image."""
         offset = np.array([self.left, self.top, self.left, self.top], np.float32)
         placed = (boxes - offset) / np.array(self.scale * 2, np.float32)
         limits = np.array([self.width, self.height, self.width, self.height], np.float32)
@@ -52,11 +52,11 @@ def letterboxed(
     Args:
         image: shape ``(height, width, 3)``.
         size: height and width of the input.
-        multiple: None for an input of exactly this size; else the input is as small as the image lets it be, and its
-            sides are less than `size` by a multiple of this.
+        multiple: None for an input of exactly `size`; otherwise the borders are as small as possible, and each side
+            differs from `size` by a multiple of this number.
 
     Returns:
-        The input, shape ``(rows, columns, 3)``, and where the image is in it.
+        The input, shape ``(rows, columns, 3)``, and the position of the image in it.
     """
     cv2 = load_opencv()
     height, width = image.shape[:2]
@@ -75,7 +75,7 @@ def letterboxed(
 
 
 def tensor_of(pixels: NDArray[np.uint8], kind: type[np.floating]) -> NDArray[np.floating]:
-    """Return pixels, shape ``(rows, columns, 3)``, as floats from 0 to 1, shape ``(1, 3, rows, columns)``."""
+    """Convert pixels to floats from 0 to 1: shape ``(rows, columns, 3)`` to ``(1, 3, rows, columns)``."""
     cv2 = load_opencv()
     planes = np.empty((1, 3, *pixels.shape[:2]), np.float32)
     for plane, levels in zip(planes[0], cv2.split(pixels), strict=True):

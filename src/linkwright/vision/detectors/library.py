@@ -1,4 +1,4 @@
-"""Importing OpenCV, which the extra ``vision`` brings, and LiteRT."""
+"""Import OpenCV, which the extra ``vision`` installs, and LiteRT."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def load_opencv() -> Any:
     """Import the module ``cv2``.
 
     Raises:
-        LinkwrightError: VISION101 it is not installed.
+        LinkwrightError: VISION101, it is not installed.
     """
     try:
         import cv2
@@ -26,10 +26,12 @@ def load_opencv() -> Any:
 
 @cache
 def load_litert() -> Any:
-    """Import ``ai_edge_litert.interpreter``, which no extra brings: it is large, and for TFLite files only.
+    """Import ``ai_edge_litert.interpreter``.
+
+    No extra installs it, because it is large and only TFLite files need it.
 
     Raises:
-        LinkwrightError: VISION101 it is not installed.
+        LinkwrightError: VISION101, it is not installed.
     """
     try:
         from ai_edge_litert import interpreter  # type: ignore[import-not-found, unused-ignore]

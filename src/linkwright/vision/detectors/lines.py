@@ -1,4 +1,4 @@
-"""The detector ``line``: a line on the floor to follow."""
+"""The detector ``line``, which finds a line on the floor to follow."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ _NAMES = ("line",)
 class LineDetector(Detector):
     """Detects the largest patch of a colour in the lower part of the image.
 
-    The middle of its box is where the line is: ``(x - width / 2) / (width / 2)`` is how far a robot is off, from -1 to
-    1 and positive where the line is to the right. The score is the share of rows of that part that have the line.
+    The line is at the centre of its box: ``(x - width / 2) / (width / 2)`` is the robot's offset from it, from -1 to
+    1, and positive if the line is to the right. The score is the share of rows of that part that contain the line.
 
     Settings:
         ``colour``
-            of the line, six numbers, see `hsv_range`; dark unless it is given.
+            the colour of the line, six numbers, see `hsv_range`; dark by default.
         ``part``
-            how much of the image is looked at, from below; 0.25 unless it is given.
+            the share of the image that is searched, from the bottom; 0.25 by default.
         ``least_area``
-            of the line, in pixels; 150 unless it is given.
+            the minimum area of the line, in pixels; 150 by default.
 
     Raises:
         LinkwrightError: VISION101 OpenCV is missing, VISION109 a setting is wrong.
@@ -46,12 +46,12 @@ class LineDetector(Detector):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """One name: ``line``."""
+        """The only name: ``line``."""
         return _NAMES
 
     @property
     def notes(self) -> tuple[Phrase, ...]:
-        """A remark that it needs no GPU, if it was given one."""
+        """A remark that the detector does not need a GPU, if one was requested."""
         return self._notes
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:

@@ -21,13 +21,13 @@ _USUAL_MARKERS, _USUAL_TAGS = "4X4_50", "APRILTAG_36h11"
 
 
 class MarkerDetector(Detector):
-    """ArUco markers and AprilTags; the class of a marker is its number, its score 1.
+    """Detects ArUco markers and AprilTags; the class of a marker is its ID, its score 1.
 
-    Corners are in the order of OpenCV: upper left of the marker, then clockwise.
+    Corners are in OpenCV's order: clockwise, from the marker's upper left corner.
 
     Settings:
         ``dictionary``
-            which markers there are, as OpenCV names them: ``4X4_50``, ``6X6_250``, ``APRILTAG_36h11``, ...
+            the marker dictionary, as OpenCV names it: ``4X4_50``, ``6X6_250``, ``APRILTAG_36h11``, ...
 
     Raises:
         LinkwrightError: VISION101 OpenCV is missing, VISION109 there is no such dictionary.
@@ -49,12 +49,12 @@ class MarkerDetector(Detector):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The ids of the markers."""
+        """The IDs of the markers."""
         return self._names
 
     @property
     def notes(self) -> tuple[Phrase, ...]:
-        """A remark that it needs no GPU, if it was given one."""
+        """A remark that the detector does not need a GPU, if one was requested."""
         return self._notes
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
@@ -69,19 +69,20 @@ class MarkerDetector(Detector):
 
 
 class AprilTagDetector(MarkerDetector):
-    """As `MarkerDetector`, for the usual tags of robots, 36h11."""
+    """A `MarkerDetector` whose default is the tag family that robots usually use, 36h11."""
 
     def __init__(self, options: DetectorOptions) -> None:
         super().__init__(options, _USUAL_TAGS)
 
 
 class QrDetector(Detector):
-    """QR codes; the class of a code is its text, its score 1. Unreadable ones are left out.
+    """Detects QR codes; the class of a code is its text, its score 1. Unreadable codes are omitted.
 
-    OpenCV finds codes long before it can read them: those are cut out, straightened and enlarged, and read once more.
+    OpenCV finds codes at a size at which it cannot read them yet. Such codes are cut out, rectified, enlarged, and read
+    again.
 
     Raises:
-        LinkwrightError: VISION101 OpenCV is missing, VISION109 it is given what only networks have.
+        LinkwrightError: VISION101 OpenCV is missing, VISION109 it is given options that only networks have.
     """
 
     def __init__(self, options: DetectorOptions) -> None:
@@ -90,12 +91,12 @@ class QrDetector(Detector):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Empty: the texts are those in the image."""
+        """Always empty: the classes are the texts in the images."""
         return ()
 
     @property
     def notes(self) -> tuple[Phrase, ...]:
-        """A remark that it needs no GPU, if it was given one."""
+        """A remark that the detector does not need a GPU, if one was requested."""
         return self._notes
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
@@ -113,7 +114,10 @@ class QrDetector(Detector):
         return most_certain([_box(place) for place in places], [1.0] * len(read), classes, names, limits, places)
 
     def _read(self, grey: NDArray[np.uint8], corners: NDArray[np.float32]) -> str:
-        """Return the text of a code with these corners, rectified and enlarged; empty if it cannot be read."""
+        """Return the text of the code with these corners, or an empty text if it cannot be read.
+
+        The code is rectified and enlarged before.
+        """
         cv2 = load_opencv()
         near, far = _QUIET_ZONE, _QUIET_ZONE + _ENLARGED
         square = np.array([(near, near), (far, near), (far, far), (near, far)], np.float32)

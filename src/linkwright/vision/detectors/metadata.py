@@ -1,4 +1,4 @@
-"""Metadata of ONNX files, as Ultralytics' exporters write them."""
+"""Read the metadata of ONNX files, as Ultralytics' exporters write it."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ _LARGEST_STRIDE = 256
 
 @dataclass(frozen=True, slots=True)
 class Metadata:
-    """The metadata of a network; defaults where the file has none.
+    """The metadata of a network, with defaults for missing entries.
 
     Attributes:
         names: the names of its classes; None if the file has none.
         task: ``detect``, ``segment``, ``pose``, ``obb``, ``classify``; empty if the file has none.
-        stride: the sides of its input are multiples of it.
+        stride: the sides of the input are multiples of this.
         size: height and width of its input in training.
         suppressed: whether its boxes are final: no two of them are of the same object.
-        key_numbers: for each box, those of its key points.
+        key_numbers: the number of keypoint values for each box.
     """
 
     names: tuple[str, ...] | None = None

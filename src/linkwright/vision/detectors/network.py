@@ -1,4 +1,4 @@
-"""A network in an ONNX file as a detector: any YOLOv5, v8, v10, v11 or 26, and our own."""
+"""A detector that runs a network in an ONNX file: any YOLOv5, v8, v10, v11 or 26, or our own."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ class NetworkDetector(Detector):
 
     Args:
         file: the ONNX file.
-        options: labels, device and size of the input count.
+        options: the options; labels, device and input size are used.
 
     Raises:
         LinkwrightError: VISION101 onnxruntime or OpenCV is missing, VISION103 the file cannot be loaded, VISION105 its
             input is not an image, VISION106 and VISION107 see `find_layout`, VISION108 the labels cannot be read,
-            VISION109 there is no such device, or no input of that size.
+            VISION109 the device is unknown, or the network has no input of that size.
     """
 
     def __init__(self, file: Path, options: DetectorOptions) -> None:
@@ -70,14 +70,14 @@ class NetworkDetector(Detector):
 
     @property
     def notes(self) -> tuple[Phrase, ...]:
-        """Remarks: ignored outputs, and the device if it is not the requested one."""
+        """Remarks on ignored outputs, and on the device if it is not the requested one."""
         return tuple(self._notes)
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
         """Detect objects in an image.
 
         Raises:
-            LinkwrightError: VISION105 the network fails, VISION106 its outputs are not numbers.
+            LinkwrightError: VISION105 the network fails, VISION106 its outputs contain values that are not numbers.
         """
         if not image.size:
             return Detections.none(self._names)

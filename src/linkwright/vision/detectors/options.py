@@ -1,4 +1,4 @@
-"""Options of detectors."""
+"""The options of detectors."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ LARGEST_SIZE = 8192
 
 @dataclass(frozen=True, slots=True)
 class DetectorOptions:
-    """Options of a detector; each takes those that it has a use for.
+    """The options of a detector; each detector uses only those that apply to it.
 
     Attributes:
         labels: a file with the names of the classes, instead of those in the network.
         device: where a network runs: ``cpu``, ``cuda``, ``cuda:0``, ``0``.
-        size: height and width of a network's input, for those that take any; None for that of its training.
-        settings: by name, those of the detectors that need no network.
+        size: height and width of a network's input, if it takes any size; None for the size used in training.
+        settings: the settings of detectors without a network, by name.
     """
 
     labels: Path | None = None

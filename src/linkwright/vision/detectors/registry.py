@@ -1,7 +1,7 @@
-"""Finding detectors: networks by path or by the name of a fetched model, and detectors of packages by entry points.
+"""Find detectors: networks by path or by the name of a fetched model, and packages' detectors by entry point.
 
-The latter are entry points of the group ``linkwright.detectors``: each names a callable that takes `DetectorOptions`,
-returns a `Detector`, and raises LinkwrightError if its library is missing.
+Entry points are in the group ``linkwright.detectors``. Each names a callable that takes `DetectorOptions`, returns a
+`Detector`, and raises LinkwrightError if its library is missing.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ def detector_names() -> tuple[str, ...]:
 
 
 def make_detector(model: str, options: DetectorOptions) -> Detector:
-    """Make a detector by its name, or from a network in an ONNX or TFLite file.
+    """Create a detector by its name, or from a network in an ONNX or TFLite file.
 
     Models that `linkwright models get` has fetched are found by their names.
 
     Raises:
-        LinkwrightError: VISION102 there is neither such a detector nor such a file, VISION104 the file holds a network
-            in another format; else an error of the detector itself.
+        LinkwrightError: VISION102 there is neither such a detector nor such a file, VISION104 the file contains a
+            network in another format; otherwise an error of the detector itself.
     """
     found = extensions(_GROUP).get(model)
     if found is not None:

@@ -1,4 +1,4 @@
-"""Selecting detections by limits."""
+"""Select detections by limits."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ def most_certain(
     limits: Limits,
     corners: Sequence[object] | None = None,
 ) -> Detections:
-    """Return the detections that count, the most certain first.
+    """Return the detections within the limits, the most certain first.
 
     Args:
-        boxes: left, top, right, bottom of each.
-        scores: of each.
-        classes: of each, places in `names`.
-        names: of the classes.
-        limits: which count.
-        corners: of each, four points, for objects that have them.
+        boxes: left, top, right, bottom of each detection.
+        scores: the score of each detection.
+        classes: the class of each detection, an index in `names`.
+        names: the names of the classes.
+        limits: the limits of detections.
+        corners: the four corners of each detection, for objects that have them.
     """
     wanted = [
         index

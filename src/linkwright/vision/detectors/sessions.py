@@ -1,4 +1,4 @@
-"""Sessions of onnxruntime on a device."""
+"""Create sessions of onnxruntime on a device."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parsing the settings of detectors, from parameters or a command line."""
+"""Parse the settings of detectors from parameters or a command line."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ def bad_setting(name: str, value: object, hint: Phrase | None = None) -> Linkwri
 
 
 def number(settings: Mapping[str, object], name: str, default: float, low: float, high: float) -> float:
-    """Parse a number within limits.
+    """Return a setting as a number within limits.
 
     Raises:
-        LinkwrightError: VISION109, it is none.
+        LinkwrightError: VISION109, the setting is not such a number.
     """
     value = settings.get(name, default)
     if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
@@ -26,10 +26,10 @@ def number(settings: Mapping[str, object], name: str, default: float, low: float
 
 
 def choice(settings: Mapping[str, object], name: str, default: str, known: Sequence[str]) -> str:
-    """Parse one of some words.
+    """Return a setting that is one of the known words.
 
     Raises:
-        LinkwrightError: VISION109, it is none of them.
+        LinkwrightError: VISION109, the setting is not one of them.
     """
     value = str(settings.get(name, default))
     if value not in known:

@@ -1,4 +1,4 @@
-"""Non-maximum suppression: of overlapping boxes of one class the most certain is kept."""
+"""Non-maximum suppression: keep the most certain of overlapping boxes of one class."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ MOST_CANDIDATES = 30_000
 def suppressed(
     boxes: NDArray[np.float32], scores: NDArray[np.float32], classes: NDArray[np.int32], iou: float, most: int
 ) -> NDArray[np.intp]:
-    """Return the indices of the kept boxes, the most certain first.
+    """Return the indices of the boxes to keep, the most certain first.
 
     Args:
         boxes: shape ``(n, 4)``: left, top, right, bottom.
         scores: shape ``(n,)``.
-        classes: shape ``(n,)``; boxes of different classes leave each other alone.
+        classes: shape ``(n,)``; boxes of different classes do not suppress each other.
         iou: two boxes of a class with a larger intersection over union are the same object.
-        most: how many may stay.
+        most: the maximum number of boxes to keep.
 
     Returns:
-        Places in `boxes`, at most `most`.
+        Indices in `boxes`, at most `most`.
     """
     left = np.argsort(-scores, kind="stable")[:MOST_CANDIDATES]
     areas = (boxes[:, 2] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 1])
@@ -35,6 +35,6 @@ def suppressed(
         height = np.minimum(boxes[first, 3], others[:, 3]) - np.maximum(boxes[first, 1], others[:, 1])
         common = np.maximum(width, 0) * np.maximum(height, 0)
         union = areas[first] + areas[left] - common
-        same = (union > 0) & (common > iou * union)  # no area: an untrained network has such boxes, too
+        same = (union > 0) & (common > iou * union)  # an untrained network also outputs boxes without area
         left = left[~(same & (classes[left] == classes[first]))]
     return np.asarray(kept, np.intp)

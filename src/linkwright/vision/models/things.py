@@ -1,4 +1,4 @@
-"""The network ``things``, which detects the objects in Linkwright's worlds; its card is ``things.md``."""
+"""The network ``things``, which detects the objects in Linkwright's worlds. Its card is ``things.md``."""
 
 from __future__ import annotations
 

@@ -1,9 +1,10 @@
-"""detect_3d_node: positions in metres of detected objects.
+"""detect_3d_node: computes the positions of detected objects in metres.
 
 Source: yolo_ros 4 (the executable, the topics ``detections``, ``depth_image``, ``depth_info`` and ``detections_3d``,
-the parameters, and that images half a second apart belong together). Deliberate differences: detections are those of
-vision_msgs, except in the node with yolo_ros's own name; depth images of 32FC1 are metres whatever the divisor, as in
-REP 118; and with a ``ground_frame``, objects without a known depth are placed where their boxes touch the ground.
+the parameters, and that messages up to half a second apart are matched). Deliberate differences: detections are those
+of vision_msgs, except in the node with yolo_ros's own name; depth images of 32FC1 are in metres regardless of the
+divisor, as in REP 118; and with a ``ground_frame``, objects without a known depth are placed where their boxes touch
+the ground.
 """
 
 from __future__ import annotations
@@ -40,15 +41,15 @@ _FORWARD = (0.5, -0.5, 0.5, 0.5)
 
 
 class Detect3DNode(SingleNode):
-    """The running node.
+    """The detect_3d_node node.
 
     Parameters: ``target_frame`` (of the result), ``depth_image_units_divisor`` (units per metre in images of 16UC1),
-    ``maximum_detection_threshold`` (the greatest distance of depths from the middle of the object's surface, metres),
+    ``maximum_detection_threshold`` (the largest difference in depth from the middle of the object's surface, metres),
     ``depth_image_reliability`` and ``depth_info_reliability`` (1 reliable, 2 best effort), ``ground_frame`` (its x and
     y span the ground; empty to place no objects on the ground), ``maximum_distance`` (metres).
 
     Raises:
-        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
+        LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).
     """
 
     DEFAULT_NAME = "detect_3d_node"
@@ -110,7 +111,7 @@ class Detect3DNode(SingleNode):
             self._markers.publish(_markers(self.FORM, found, places))
 
     def _places(self, message: Any) -> list[Place | None]:
-        """Return the positions of detections, in the optical frame of their image."""
+        """Return the positions of detections in the optical frame of their image."""
         camera = self._cameras.get("colour") or self._cameras.get("depth")
         if camera is None:
             self._complain("no camera_info has arrived")
@@ -127,7 +128,7 @@ class Detect3DNode(SingleNode):
         return places
 
     def _depths_at(self, message: Any) -> NDArray[np.float64] | None:
-        """Return the depth image for detections, metres; None if there is none."""
+        """Return the depth image that belongs to detections, in metres; None if there is none."""
         time_ns = message.header.stamp.nanoseconds
         image = min(self._depths, key=lambda depth: abs(depth.header.stamp.nanoseconds - time_ns), default=None)
         if image is None or abs(image.header.stamp.nanoseconds - time_ns) > _SLOP_NS:
@@ -148,7 +149,7 @@ class Detect3DNode(SingleNode):
         return depths if image.encoding == "32FC1" else depths * self._unit
 
     def _ground_below(self, message: Any) -> tuple[NDArray[np.float64], float] | None:
-        """Return the direction up in the optical frame, and the height of the camera."""
+        """Return the upward direction in the optical frame, and the height of the camera."""
         if not self._ground:
             return None
         header = message.header
@@ -159,7 +160,7 @@ class Detect3DNode(SingleNode):
         return np.array(rotate((-x, -y, -z, w), (0.0, 0.0, 1.0))), pose[2]
 
     def _placed(self, detection: Any, place: Place, pose: Transform, header: Any) -> Any:
-        """Return a detection with its position in the target frame: a box with x along the view and z up."""
+        """Return a detection with a box in the target frame, whose x is along the view and z up."""
         middle = compose(pose, (*place.centre, *_FORWARD))
         return self.FORM.placed(detection, header, middle, (place.depth, place.width, place.height))
 
@@ -170,7 +171,7 @@ class Detect3DNode(SingleNode):
 
 
 class YoloDetect3DNode(Detect3DNode):
-    """detect_3d_node of yolo_ros: yolo_msgs/msg/DetectionArray in and out, with positions in ``bbox3d``."""
+    """detect_3d_node of yolo_ros, which adds ``bbox3d`` to yolo_msgs/msg/DetectionArray."""
 
     FORM = YOLO_FORM
 

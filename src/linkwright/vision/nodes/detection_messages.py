@@ -1,4 +1,4 @@
-"""Converting detections and images to messages."""
+"""Convert detections and images to messages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.vision.nodes.dialects import VISION, YOLO
 
 
 def vision_message(header: Any, found: Detections) -> Any:
-    """Convert detections to vision_msgs/msg/Detection2DArray: the class's name is its ``class_id``."""
+    """Convert detections to vision_msgs/msg/Detection2DArray, with the class name as ``class_id``."""
     one, hypothesis = (
         get_message("vision_msgs/msg/Detection2D"),
         get_message("vision_msgs/msg/ObjectHypothesisWithPose"),

@@ -1,4 +1,4 @@
-"""Detections of vision_msgs and yolo_msgs: reading them, and adding ids and positions."""
+"""Read detections of vision_msgs and yolo_msgs, and add tracker IDs and positions to them."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from linkwright.vision.detections import Detections
 
 
 class DetectionForm(ABC):
-    """The form of a package's detection messages.
+    """The format of a package's detection messages.
 
     Args:
-        images: the type of message with detections in an image.
-        places: that with detections in metres.
+        images: the type of messages with detections in an image.
+        places: the type of messages with detections in metres.
     """
 
     def __init__(self, images: str, places: str) -> None:
         self.images, self.places = images, places
 
     def read(self, message: Any) -> Detections:
-        """Return the detections of a message, in its order, each by its best hypothesis."""
+        """Return the detections of a message in its order, with the best hypothesis of each."""
         best = [self.best(detection) for detection in message.detections]
         names = tuple(dict.fromkeys(name for name, _ in best))
         return Detections(
@@ -37,14 +37,14 @@ class DetectionForm(ABC):
         )
 
     def with_id(self, detection: Any, number: int) -> Any:
-        """Return a detection with the id of a tracker."""
+        """Return a copy of a detection with the ID of a tracker."""
         tracked = copy(detection)
         tracked.id = str(number)
         return tracked
 
     @abstractmethod
     def best(self, detection: Any) -> tuple[str, float]:
-        """Return the class and the score of a detection's best hypothesis; an empty class for none."""
+        """Return the class and score of a detection's best hypothesis; the class is empty if there is none."""
 
     @abstractmethod
     def box(self, detection: Any) -> NDArray[np.float64]:
@@ -52,15 +52,15 @@ class DetectionForm(ABC):
 
     @abstractmethod
     def placed(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
-        """Return a detection with its position: centre and size of a box in metres, in the frame of the header."""
+        """Return a detection with a box in metres, whose pose is in the frame of the header."""
 
     @abstractmethod
     def place(self, detection: Any) -> Any:
-        """Return the box in metres of a detection with a position: a message with ``center`` and ``size``."""
+        """Return the box in metres of a detection: a message with ``center`` and ``size``."""
 
 
 class _Vision(DetectionForm):
-    """vision_msgs: a detection has hypotheses, whose class is a text."""
+    """The format of vision_msgs: a detection has hypotheses, whose class is a string."""
 
     def best(self, detection: Any) -> tuple[str, float]:
         if not detection.results:
@@ -85,7 +85,7 @@ class _Vision(DetectionForm):
 
 
 class _Yolo(DetectionForm):
-    """yolo_msgs: a detection has one class, and its position beside its box."""
+    """The format of yolo_msgs: a detection has one class, and both a 2D box and a 3D box."""
 
     def best(self, detection: Any) -> tuple[str, float]:
         return detection.class_name, float(detection.score)

@@ -1,24 +1,24 @@
-"""The detector node, and its names in other packages.
+"""The detector node, and its variants with the names of other packages.
 
 The node subscribes to images only while its detections have a subscriber. A thread processes the latest image, so that
-a slow network never builds up a queue. The same thread loads the detector, which may take seconds: until then the node
-takes no images, `set_classes` delays its answer, and everything else is answered. The differences between the packages
-are in `dialects`.
+a slow network never builds up a queue. The same thread loads the detector, which may take seconds. Until then the node
+does not process images, `set_classes` delays its response, and all other requests are answered immediately. The
+differences between the packages are in `dialects`.
 
 Parameters, by the names of yolo_ros:
 
 ``model``
-    an ONNX file, or the name of a detector: ``colours``, ``aruco``, ``apriltag``, ``qr``, ``line``, and those of
-    packages.
+    an ONNX file, or the name of a detector: ``colours``, ``aruco``, ``apriltag``, ``qr``, ``line``, or a detector
+    that a package provides.
 ``labels``
     a file with the names of the classes, instead of those in the network.
 ``device``
     where the network runs: ``cpu``, ``cuda:0``.
 ``imgsz_height``, ``imgsz_width``
-    the input size of a network that takes any size; 0 for that of its training.
+    the input size of a network that takes any size; 0 for the size used in training.
 ``threshold``, ``iou``, ``max_det``, ``classes``, ``enable``, ``max_rate``
-    which detections count, whether images are processed, and how many a second at most (0: all). These may be set at
-    run time. ``classes`` are names; none means all.
+    which detections count, whether images are processed, and the maximum number of images per second (0: all). These
+    may be set at run time. ``classes`` are names; an empty list means all.
 ``input_image_topic``, ``image_transport``, ``image_reliability``
     the source of images: a topic of Image, or one that ends in ``/compressed``; 1 reliable, 2 best effort.
 ``colours.NAME``, ``dictionary``, ``least_area``, ``part``, ``colour``
@@ -83,7 +83,7 @@ _RATE_SLACK = 0.9
 
 @dataclass(frozen=True, slots=True)
 class _Task:
-    """An image for the detector, its limits, and whether to draw boxes."""
+    """An image for the detector, its limits, and whether to draw boxes into the image."""
 
     message: Any
     limits: Limits
@@ -91,13 +91,13 @@ class _Task:
 
 
 class DetectorNode(SingleNode):
-    """The running node. It exits if there is no such detector, or if the detector lacks the classes.
+    """The detector node. It exits if the detector does not exist or lacks a requested class.
 
     Attributes:
         loaded: a future that is done when the detector is loaded.
 
     Raises:
-        LinkwrightError: a parameter cannot have its value (NODE433, VISION109).
+        LinkwrightError: a parameter has an invalid value (NODE433, VISION109).
     """
 
     DEFAULT_NAME = "yolo_node"
@@ -201,11 +201,11 @@ class DetectorNode(SingleNode):
         return QoSProfile(depth=1, reliability=known[reliability])
 
     def _limits_of(self, changed: dict[str, Any], known: Sequence[str] | None) -> Limits:
-        """Return the limits of the parameters, some of them replaced.
+        """Return the limits that the parameters set, with some values replaced.
 
         Args:
-            changed: the others, by name.
-            known: the classes of the detector; None while it is loaded, when all count.
+            changed: the replacing values, by parameter name.
+            known: the classes of the detector; None while it is being loaded, when all classes count.
 
         Raises:
             LinkwrightError: NODE433, `max_det` is less than 1, or the detector has no such class.
@@ -294,7 +294,7 @@ class DetectorNode(SingleNode):
         return partial(self._look, detector)
 
     def _look(self, detector: Detector, task: _Task) -> None:
-        """Detect objects in an image."""
+        """Detect objects in an image, and hand the result over to the node."""
         try:
             message = self._unpacker.image(task.message, self._source.transport)
             image = decode_image(message, self._ranges).rgb()
@@ -318,7 +318,7 @@ class DetectorNode(SingleNode):
             self._done.popleft()()
 
     def _begin(self, detector: Detector) -> None:
-        """Start to take images."""
+        """Begin to subscribe to images."""
         for note in detector.notes:
             self._node.get_logger().info(str(note))
         try:
@@ -361,20 +361,23 @@ def _failure(error: Exception) -> LinkwrightError:
 
 
 class YoloRosNode(DetectorNode):
-    """yolo_node of yolo_ros: yolo_msgs/msg/DetectionArray on ``detections``, and ``dbg_image`` too."""
+    """yolo_node of yolo_ros: publishes yolo_msgs/msg/DetectionArray on ``detections``, and ``dbg_image``."""
 
     DIALECT = YOLO_ROS
 
 
 class Yolov5RosNode(DetectorNode):
-    """The detector of yolov5_ros: ``weights``, ``confidence_threshold``, ``iou_threshold``, ``output_topic``."""
+    """The detector of yolov5_ros.
+
+    It has ``weights``, ``confidence_threshold``, ``iou_threshold`` and ``output_topic``.
+    """
 
     DEFAULT_NAME = "detect"
     DIALECT = YOLOV5_ROS
 
 
 class Yolov5Ros2Node(DetectorNode):
-    """yolo_detect_2d of yolov5_ros2: ``image_topic``; ``yolo_result`` and ``result_img``."""
+    """yolo_detect_2d of yolov5_ros2, with its ``image_topic``, ``yolo_result`` and ``result_img``."""
 
     DEFAULT_NAME = "yolov5_ros2"
     DIALECT = YOLOV5_ROS2

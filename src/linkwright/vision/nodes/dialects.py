@@ -1,4 +1,4 @@
-"""Names of nodes, parameters and topics of the detectors of other packages.
+"""The names of nodes, parameters and topics in other packages' detectors.
 
 Sources: yolo_ros 4 (mgonzs13): node, parameters, defaults, topics, yolo_msgs; openrobotics_darknet_ros; yolov5_ros;
 yolov5_ros2 (fishros).
@@ -13,23 +13,23 @@ VISION, YOLO = "vision_msgs/msg/Detection2DArray", "yolo_msgs/msg/DetectionArray
 
 @dataclass(frozen=True, slots=True)
 class Dialect:
-    """The names of topics, and of parameters; empty for parameters that a node lacks.
+    """The topic and parameter names of a detector node; empty for parameters that it lacks.
 
     Attributes:
-        model: the parameter with the ONNX file or the detector.
-        labels: the parameter with the file of labels.
-        threshold: the parameter with the least score.
-        least_score: its default.
-        iou: the parameter with the largest overlap of boxes of a class.
-        overlap: its default.
-        most: the parameter with the largest number of detections in an image.
-        largest_number: its default.
+        model: the parameter with the ONNX file or the name of the detector.
+        labels: the parameter with the label file.
+        threshold: the parameter with the minimum score.
+        least_score: the default of `threshold`.
+        iou: the parameter with the maximum overlap of boxes of the same class.
+        overlap: the default of `iou`.
+        most: the parameter with the maximum number of detections in an image.
+        largest_number: the default of `most`.
         image_topic: the parameter with the topic of images.
-        images: its default.
+        images: the default of `image_topic`.
         output_topic: the parameter with the topic of detections.
-        detections: its default.
+        detections: the default of `output_topic`.
         debug_images: the topics of images with boxes.
-        message: the type of detections.
+        message: the type of detection messages.
     """
 
     model: str = "model"

@@ -1,4 +1,4 @@
-"""Diagnosing missing images: a wrong topic, another type, QoS, a camera that stopped."""
+"""Diagnose missing images: wrong topic, different type, incompatible QoS, or a camera that stopped."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _MOST_TOPICS = 5
 class ImageWatch:
     """Warns once when no image has arrived for some seconds, and reports when images resume.
 
-    The timeout doubles each time that images resume, so that a slow camera causes only a few warnings.
+    The timeout doubles each time images resume, so that a slow camera causes only a few warnings.
 
     Args:
         node: the node that logs.
         source: the source of the images.
         qos: the QoS of the node's subscription.
-        is_waiting: returns whether the node subscribes to images now.
+        is_waiting: returns whether the node currently subscribes to images.
         topic_parameter: the parameter with the topic; empty if the topic can only be remapped.
     """
 
@@ -33,13 +33,13 @@ class ImageWatch:
         self._node, self._source, self._qos = node, source, qos
         self._is_waiting, self._topic_parameter = is_waiting, topic_parameter
         self._came = self._has_warned = False
-        self._quiet, self._patience = 0, 1  # periods
-        # Not simulated time, which may be paused.
+        self._quiet, self._patience = 0, 1  # both in timer periods
+        # Use the steady clock: simulated time may be paused, which would hold back the warning.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         node.create_timer(_SECONDS, self._look, clock=clock)
 
     def came(self) -> None:
-        """Note that an image has arrived."""
+        """Record that an image has arrived."""
         self._came = True
 
     def _look(self) -> None:
@@ -82,7 +82,7 @@ class ImageWatch:
         return phrase("no image has arrived on '{topic}' for {seconds} s", topic=topic, seconds=seconds), None
 
     def _others(self) -> Phrase | None:
-        """Return the topics that have images."""
+        """Return a hint that names other topics with images; None if there are none."""
         passed = {self._source.topic, *(publisher.name for publisher in self._node.publishers)}
         topics = [
             name

@@ -1,4 +1,4 @@
-"""A worker thread for the latest item: slow work never makes a queue."""
+"""A worker thread that processes only the latest item, so that slow work never builds up a queue."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ _SECONDS_FOR_THE_LAST = 10.0
 
 
 class LatestWorker(Generic[T]):
-    """Calls a function in a thread, with the item offered last.
+    """Calls a function in a thread with the item that was offered last.
 
     Args:
-        prepare: makes that function, in the thread, which may take seconds; None where nothing is to be done. Neither
-            raises anything.
-        name: of the thread.
+        prepare: called in the thread, may take seconds; returns the function, or None if there is nothing to do.
+            Neither `prepare` nor the function may raise.
+        name: the name of the thread.
     """
 
     def __init__(self, prepare: Callable[[], Callable[[T], None] | None], name: str) -> None:
@@ -29,7 +29,7 @@ class LatestWorker(Generic[T]):
         self._thread.start()
 
     def offer(self, item: T) -> None:
-        """Offer an item, which replaces one that waits."""
+        """Offer an item, which replaces an item that is still waiting."""
         with self._changed:
             if not self._ended:
                 self._waiting[:] = [item]
@@ -37,11 +37,11 @@ class LatestWorker(Generic[T]):
 
     @property
     def waits(self) -> bool:
-        """Whether an item waits."""
+        """Whether an item is waiting."""
         return bool(self._waiting)
 
     def close(self) -> None:
-        """Stop; a running call is waited for."""
+        """Stop the thread, and wait up to 10 s for a running call."""
         with self._changed:
             self._ended = True
             self._waiting.clear()

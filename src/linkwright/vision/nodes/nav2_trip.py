@@ -1,4 +1,4 @@
-"""Driving to an object by nav2: the action ``navigate_to_pose``."""
+"""Drive to an object with nav2's action ``navigate_to_pose``."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _ACTION = "nav2_msgs/action/NavigateToPose"
 
 
 class Nav2Trip:
-    """One goal of nav2 at a time.
+    """A client of nav2 that has one goal at a time.
 
     Args:
-        node: whose it is.
+        node: the node that owns the action client.
         ended: called when a goal that was not canceled has ended, with whether it was reached.
     """
 
@@ -28,7 +28,7 @@ class Nav2Trip:
 
     @property
     def is_served(self) -> bool:
-        """Whether nav2's server is available."""
+        """Whether nav2's action server is available."""
         return self._client.server_is_ready()
 
     @property
@@ -37,13 +37,13 @@ class Nav2Trip:
         return self._trip is not None
 
     def begin(self, frame: str, robot: tuple[float, float], target: tuple[float, float], distance: float) -> None:
-        """Send a goal: in front of an object, on the robot's side of it, facing it.
+        """Send a goal in front of an object: on the robot's side of it and facing it.
 
         Args:
-            frame: of the places.
-            robot: where the robot is, x and y in metres.
+            frame: the frame of both positions.
+            robot: the robot's position, x and y in metres.
             target: the position of the object.
-            distance: between the middles of both in the end, metres.
+            distance: the final distance between the centres of robot and object, metres.
         """
         yaw = atan2(target[1] - robot[1], target[0] - robot[0])
         way = max(0.0, hypot(target[0] - robot[0], target[1] - robot[1]) - distance)
@@ -57,7 +57,7 @@ class Nav2Trip:
         self._client.send_goal_async(goal).add_done_callback(lambda future: self._answered(trip, future.result()))
 
     def cancel(self) -> None:
-        """Cancel an active goal."""
+        """Cancel the active goal, if there is one."""
         self._trip = None
         if self._goal is not None:
             self._goal.cancel_goal_async()

@@ -1,8 +1,9 @@
-"""object_seeker: seeks an object by its name, drives to it or follows it, and describes what it sees.
+"""object_seeker: finds an object by its name, drives to it or follows it, and describes visible objects.
 
-``vision/go_to`` and ``vision/follow`` take a name, perhaps with a colour (``red ball``, 红色的球), ``vision/stop``
-ends it; the outcome is published on ``/voice/response``. ``vision/describe`` lists the visible objects. Each of the
-three has variants ``en`` and ``zh`` (``vision/go_to/zh``) for the language of the answer.
+``vision/go_to`` and ``vision/follow`` take a name, optionally with a colour (``red ball``, 红色的球).
+``vision/stop`` ends the search, and the outcome is published on ``/voice/response``. ``vision/describe`` lists the visible objects.
+``vision/go_to``, ``vision/follow`` and ``vision/describe`` have variants ``en`` and ``zh`` (``vision/go_to/zh``) for
+the language of the answer.
 """
 
 from __future__ import annotations
@@ -36,15 +37,15 @@ _SILENT_LASER_SECONDS = 1.0
 
 
 class ObjectSeeker(SingleNode):
-    """The running node.
+    """The object_seeker node.
 
-    Parameters: ``distance`` (from the robot's middle to the object's nearest side, m), ``max_linear_velocity`` (m/s),
+    Parameters: ``distance`` (from the robot's centre to the object's nearest side, m), ``max_linear_velocity`` (m/s),
     ``max_angular_velocity`` (rad/s), ``lost_time`` (s), ``obstacle_distance`` (m), ``blocked_time`` (s),
     ``robot_radius`` (m), ``base_frame``, ``fixed_frame``, ``use_nav2`` (use ``navigate_to_pose`` once the object is
     seen, if a server is available), ``language`` (en or zh; a request in Chinese is always answered in Chinese).
 
     Raises:
-        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
+        LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).
     """
 
     DEFAULT_NAME = "object_seeker"
@@ -78,7 +79,7 @@ class ObjectSeeker(SingleNode):
         node.create_timer(_PERIOD, self._step)
 
     def close(self) -> None:
-        """Stop the robot, and close."""
+        """Stop the robot, and close the node."""
         if self._seeker.phase is not Phase.IDLE:
             self._velocity.stop()
         self._cancel_trip()
@@ -252,7 +253,7 @@ class ObjectSeeker(SingleNode):
 
 
 def _within(pose: Transform, seen_object: SeenObject) -> tuple[float, float]:
-    """Return the distance of an object ahead and to the left of the robot, metres."""
+    """Return an object's distances ahead of the robot and to its left, metres."""
     x, y, _, *turn = invert(pose)
     ahead, left, _ = rotate((turn[0], turn[1], turn[2], turn[3]), (seen_object.x, seen_object.y, 0.0))
     return ahead + x, left + y

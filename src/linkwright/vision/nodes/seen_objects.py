@@ -22,16 +22,16 @@ _VOTES = 30
 
 @dataclass(frozen=True, slots=True)
 class SeenObject:
-    """A seen object.
+    """An object that a detector has seen.
 
     Attributes:
-        name: its class.
-        id: the id of a tracker; empty if there is none.
-        colour: the colour as a word, if known.
+        name: the name of its class.
+        id: the ID from the tracker; empty if there is none.
+        colour: the colour as a word; None if unknown.
         x, y: the position of its centre in the fixed frame, metres.
         radius: half its width, metres.
-        shape: its width by its height.
-        score: of its detection.
+        shape: its width divided by its height.
+        score: the score of its detection.
         seen_ns: the time of the image, nanoseconds.
     """
 
@@ -47,18 +47,18 @@ class SeenObject:
 
 
 class SeenObjects:
-    """Listens to detections with positions, and finds the colours of the objects in the images.
+    """Collects detections with positions, and determines the objects' colours from the images.
 
-    Colours are those of the boxes that have the same id: topics ``tracking`` and ``image_raw``.
+    The colour is measured in the box with the same ID. The topics are ``tracking`` and ``image_raw``.
 
     Args:
-        node: listens.
+        node: the node that subscribes.
         poses: the transforms.
         fixed_frame: the frame of the positions.
 
     Attributes:
-        objects: those of the latest image.
-        heard_ns: when that image arrived, by the node's clock; None before the first.
+        objects: the objects in the latest image.
+        heard_ns: when the latest detections arrived, by the node's clock; None before the first.
     """
 
     def __init__(self, node: Node, poses: FramePoses, fixed_frame: str) -> None:
@@ -79,7 +79,7 @@ class SeenObjects:
         )
 
     def _receive_tracking(self, message: Any) -> None:
-        """Record the colours of objects with ids."""
+        """Record the colours of objects that have IDs."""
         time_ns = message.header.stamp.nanoseconds
         image = next((candidate for candidate in self._images if candidate.header.stamp.nanoseconds == time_ns), None)
         if image is None or not any(detection.id for detection in message.detections):

@@ -1,6 +1,6 @@
-"""tracking_node: assigns ids to detected objects that persist from image to image.
+"""tracking_node: assigns persistent IDs to detected objects across images.
 
-Source: yolo_ros 4 (the executable, the topics ``detections`` and ``tracking``); its parameters are in a ByteTrack file
+Source: yolo_ros 4 (the executable, the topics ``detections`` and ``tracking``). Its parameters are in a ByteTrack file
 there, and parameters of the node here. Deliberate differences: it needs no images, and both topics are
 vision_msgs/msg/Detection2DArray, except in the node with yolo_ros's own name.
 """
@@ -23,19 +23,19 @@ _IMAGES_PER_SECOND = 30.0
 
 
 class TrackingNode(SingleNode):
-    """The running node.
+    """The tracking node.
 
     Parameters: ``track_high_thresh``, ``track_low_thresh`` and ``new_track_thresh`` (scores), ``match_thresh`` (1 - IoU
-    at most), ``track_buffer`` (how long an object is waited for, in images of 1/30 s), ``min_hits`` (images in a row
-    before an object gets an id).
+    at most), ``track_buffer`` (how long an undetected object is kept, in images of 1/30 s), ``min_hits`` (consecutive
+    images before an object gets an ID).
 
     Raises:
-        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
+        LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).
     """
 
     DEFAULT_NAME = "tracking_node"
     FORM: ClassVar[DetectionForm] = VISION_FORM
-    IGNORED: ClassVar[tuple[str, ...]] = ("tracker",)  # of yolo_ros; there is one tracker here
+    IGNORED: ClassVar[tuple[str, ...]] = ("tracker",)  # a parameter of yolo_ros; here there is only one tracker
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
@@ -81,7 +81,7 @@ class TrackingNode(SingleNode):
 
 
 class YoloTrackingNode(TrackingNode):
-    """tracking_node of yolo_ros: both topics are yolo_msgs/msg/DetectionArray."""
+    """tracking_node of yolo_ros, whose topics are both yolo_msgs/msg/DetectionArray."""
 
     FORM = YOLO_FORM
-    IGNORED = (*TrackingNode.IGNORED, "image_reliability")  # it needs no images
+    IGNORED = (*TrackingNode.IGNORED, "image_reliability")  # this tracker needs no images

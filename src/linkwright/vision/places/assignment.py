@@ -24,7 +24,7 @@ def assign(costs: Floats, most: float) -> list[tuple[int, int]]:
     rows, columns = costs.shape
     if not rows or not columns:
         return []
-    # One column more for each row, in which it stays alone.
+    # Add a dummy column for each row; a row assigned to it is left unpaired.
     padded = np.full((rows, columns + rows), most, np.float64)
     padded[:, :columns] = np.where(costs <= most, costs, 2.0 * abs(most) * rows + 1e6)
     owner = _owners(padded)

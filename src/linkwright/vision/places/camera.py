@@ -1,7 +1,7 @@
-"""Camera models: a pinhole, and a lens with distortion.
+"""Camera models: a pinhole camera, and a lens with distortion.
 
-Source: sensor_msgs/msg/CameraInfo; OpenCV's camera model, whose coefficients these are; axes of REP 103: x to the
-right, y down, z into the image. Pixel coordinates are those of boxes: pixel 0 is from 0 to 1.
+Source: sensor_msgs/msg/CameraInfo, and OpenCV's camera model with its coefficients. The axes are those of REP 103: x to
+the right, y down, z into the image. Pixel coordinates are those of boxes: pixel 0 extends from 0 to 1.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ class CameraModel:
     """The intrinsics of a camera.
 
     Attributes:
-        width, height: of its images, pixels.
+        width, height: the size of its images, pixels.
         fx, fy: focal lengths, pixels.
         cx, cy: the principal point, pixels.
-        distortion: k1, k2, p1, p2, k3, k4, k5, k6 of the lens; fewer, or none, for a simpler one.
+        distortion: the coefficients k1, k2, p1, p2, k3, k4, k5, k6 of the lens; fewer or none for a simpler lens.
     """
 
     width: int
@@ -57,7 +57,7 @@ class CameraModel:
         return np.stack([x, y, np.ones_like(x)], axis=-1)
 
     def pixels(self, points: Floats) -> Floats:
-        """Project points of the optical frame to the image: shapes ``(n, 3)`` and ``(n, 2)``; z must not be 0."""
+        """Project points in the optical frame to pixels: shapes ``(n, 3)`` and ``(n, 2)``; z must not be 0."""
         x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
         if any(self.distortion):
             radial, across, down = self._bent(x, y)
@@ -84,18 +84,18 @@ class CameraModel:
 def camera_model(
     width: int, height: int, k: Sequence[float], d: Sequence[float] = (), p: Sequence[float] = (), lens: str = ""
 ) -> CameraModel:
-    """Return the camera of a CameraInfo, for raw images (``image_raw``).
+    """Return the camera model of a CameraInfo, for raw images (``image_raw``).
 
     Args:
         width: the width of its images.
         height: the height of its images.
-        k: nine numbers, row by row, for the distorted image; zeros if the camera is not calibrated.
+        k: the matrix for the distorted image, nine numbers row by row; zeros if the camera is not calibrated.
         d: the distortion coefficients.
-        p: twelve numbers, for the rectified image; used if k is empty or zero.
+        p: the matrix for the rectified image, twelve numbers; used if k is empty or zero.
         lens: the distortion model, ``plumb_bob`` or ``rational_polynomial``.
 
     Raises:
-        ValueError: there is no focal length, no size, or a distortion model that is not known.
+        ValueError: the focal length or the size is missing, or the distortion model is unknown.
     """
     if width <= 0 or height <= 0:
         raise ValueError(f"the camera's images are {width} x {height} pixels")

@@ -1,4 +1,4 @@
-"""The colour of an object in an image, as a word."""
+"""Determine the colour of an object in an image, as a word."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ _MOST_PIXELS = 24
 def colour_of(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | None:
     """Return the colour of the object in a box, one of `COLOURS`.
 
-    The ellipse in the middle of the box counts; the most frequent colour of its pixels is the object's. Bright colours
+    The colour is the most frequent one among the pixels of an ellipse in the middle of the box. Bright colours
     win over white, grey and black, which glints and shadows add to every image.
 
     Args:
-        image: shape ``(height, width, 3)``, red, green, blue.
+        image: shape ``(height, width, 3)``, RGB.
         box: left, top, right, bottom, pixels.
 
     Returns:
-        None if the box is outside of the image or has many colours.
+        None if the box is outside the image or has many colours.
     """
     height, width = image.shape[:2]
     middle = np.array([box[0] + box[2], box[1] + box[3]], np.float64) / 2
@@ -60,22 +60,22 @@ def colour_of(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | None
 
 
 def named_colours(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
-    """Return the indices in `COLOURS` of pixels: red, green, blue, shape ``(n, 3)``."""
-    values = np.ascontiguousarray(pixels.T) / 255.0  # a row a channel: compared in half of the time
+    """Return the index in `COLOURS` of each RGB pixel; shape ``(n, 3)`` in, ``(n,)`` out."""
+    values = np.ascontiguousarray(pixels.T) / 255.0  # one contiguous row per channel halves the time of the comparisons
     most, least = values.max(axis=0), values.min(axis=0)
     chroma = most - least
     saturation = chroma / np.maximum(most, 1e-9)
     grey = (saturation < _GREY_SATURATION) | (chroma < _GREY_CHROMA)
     found = np.full(len(pixels), COLOURS.index("grey"), np.intp)
     found[grey & (most >= _WHITE)] = COLOURS.index("white")
-    coloured = np.flatnonzero(~grey & (most >= _BLACK))  # few pixels of most images have a hue that counts
+    coloured = np.flatnonzero(~grey & (most >= _BLACK))  # few pixels of most images need a hue
     found[coloured] = _named_hues(values[:, coloured], most[coloured], chroma[coloured], saturation[coloured])
     found[(grey & (most < 0.3)) | (most < _BLACK)] = COLOURS.index("black")
     return found
 
 
 def _named_hues(values: Floats, most: Floats, chroma: Floats, saturation: Floats) -> NDArray[np.intp]:
-    """Return the places in `COLOURS` of pixels that are neither grey, white nor black."""
+    """Return the indices in `COLOURS` of pixels that are neither grey, white nor black."""
     hue = _hue(values, most, chroma)
     found = np.full(len(hue), COLOURS.index("red"), np.intp)
     for limit, name in reversed(_HUES):

@@ -32,7 +32,7 @@ class Place:
 
     Attributes:
         centre: x, y, z in metres, in the camera's optical frame.
-        width, height, depth: along the image's x and y, and along the view, metres.
+        width, height, depth: the size along the image's x and y, and along the view, metres.
     """
 
     centre: tuple[float, float, float]
@@ -46,15 +46,16 @@ def place_by_depth(
 ) -> Place | None:
     """Return the position of an object from a depth image.
 
-    The nearest surface in the middle of the box counts, if it is more than an edge: behind an object there is always
-    another surface, often a larger one. An object is assumed to be as deep as it is wide, unless its surface is flat.
+    The nearest surface in the middle of the box counts, if it is more than an edge, because behind an object there is
+    always another surface, often a larger one. An object is assumed to be as deep as it is wide, unless its surface is
+    flat.
 
     Args:
-        box: left, top, right, bottom, in pixels of an image that is registered to the depth image; its size is that of
+        box: left, top, right, bottom, in pixels of an image that is registered to the depth image and has the size of
             `camera`.
-        depths: shape ``(rows, columns)``, metres along the view; NaN, infinite, 0 or less without a depth.
+        depths: shape ``(rows, columns)``, metres along the view; NaN, infinite, 0 or negative where unknown.
         camera: the camera of the image with the box.
-        spread: depths that differ from the middle of the surface by more do not belong to the object, metres.
+        spread: the largest difference in depth from the middle of the surface to a point of the object, metres.
         farthest: greater depths are ignored, metres.
 
     Returns:
@@ -88,18 +89,18 @@ def place_on_ground(
 ) -> Place | None:
     """Return the position of an object on the ground, from the lower edge of its box.
 
-    An object is assumed to be as deep as it is wide. If its box is about square it touches the ground below its centre,
-    as a ball does; otherwise the box ends at the foot of its front.
+    An object is assumed to be as deep as it is wide. If its box is about square, the object touches the ground below
+    its centre, as a ball does. Otherwise the box ends at the foot of the object's front.
 
     Args:
         box: left, top, right, bottom, pixels.
-        camera: that of the image.
-        normal: of the ground, upwards, in the optical frame: shape ``(3,)``, length 1.
-        height: of the camera above the ground, metres.
-        farthest: a farther object has no position, metres along the view.
+        camera: the camera of the image.
+        normal: the ground's upward normal in the optical frame: shape ``(3,)``, length 1.
+        height: the height of the camera above the ground, metres.
+        farthest: no position is returned for objects farther away, metres along the view.
 
     Returns:
-        None where the ground there cannot be seen: at the horizon and above, or below the image's edge.
+        None if the ground is not visible there: at the horizon and above, or below the image's edge.
     """
     left, _, right, bottom = (float(edge) for edge in box)
     if bottom >= camera.height - _EDGE_PIXELS:
@@ -139,7 +140,7 @@ def _gap(depth: float) -> float:
 
 
 def _nearest_surface(known: Floats) -> tuple[float, float]:
-    """Return the nearest and the farthest depth of the nearest surface of sufficient size, of sorted depths."""
+    """Return the depth range of the nearest surface of sufficient size, from sorted depths."""
     gaps = np.diff(known) > np.maximum(_GAP_METRES, _GAP_SHARE * known[:-1])
     surfaces = np.split(known, np.flatnonzero(gaps) + 1)
     for surface in surfaces:

@@ -1,4 +1,4 @@
-"""Seeking: the decisions of a robot that searches an object, drives to it, and follows it."""
+"""The decisions of a robot that searches for an object, drives to it, and follows it."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ class SeekSettings:
 
     Attributes:
         distance: the final distance from the robot's centre to the object's nearest side, metres.
-        speed: the largest speed, m/s.
-        turn_speed: the largest angular speed, rad/s; half of it to look round.
+        speed: the maximum speed, m/s.
+        turn_speed: the maximum angular speed, rad/s; half of it is used to look around.
         lost_time: the time without seeing the object after which the robot stops, seconds.
-        obstacle_distance: the least distance from the robot's centre to obstacles ahead, metres.
+        obstacle_distance: the minimum distance from the robot's centre to obstacles ahead, metres.
         blocked_time: how long the robot waits for a clear path, seconds.
     """
 
@@ -55,13 +55,13 @@ class View:
 
     Attributes:
         time: seconds.
-        heading: where it looks, rad, in a frame that does not turn with it.
+        heading: the robot's heading, rad, in a frame that does not turn with it.
         bearing: the bearing of the object, rad to the left; valid if the object was ever seen.
         surface: the distance from the robot's centre to the object's nearest side, metres; infinite if it was never
             seen.
-        seen_ago: seconds since the object was seen; infinite for never.
+        seen_ago: seconds since the object was seen; infinite if it was never seen.
         silence: the seconds since the last message of a detector.
-        free: metres from the robot's middle to the nearest obstacle in its way.
+        free: the distance from the robot's centre to the nearest obstacle in its way, metres.
     """
 
     time: float
@@ -83,7 +83,7 @@ class Move:
 
 
 class Seeker:
-    """Seeks an object. It stops when the object is lost, when detections fail to arrive, or when the path is blocked.
+    """Seeks an object. It stops when the object is lost, when detections stop arriving, or when the path is blocked.
 
     Args:
         settings: the settings.
@@ -109,12 +109,12 @@ class Seeker:
         self._forget()
 
     def begin(self, *, follow: bool = False) -> None:
-        """Seek another object."""
+        """Begin to seek a new object."""
         self.stop()
         self.phase, self.follow = Phase.LOOKING, follow
 
     def step(self, view: View) -> Move:
-        """Decide the next move; called several times a second unless it is idle."""
+        """Return the next move; call it several times per second unless the seeker is idle."""
         if self.phase is Phase.IDLE:
             return Move()
         if view.silence > self.settings.lost_time:

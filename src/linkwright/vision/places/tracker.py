@@ -1,7 +1,7 @@
-"""Tracking objects from image to image, after ByteTrack.
+"""Track objects from image to image, after ByteTrack.
 
-Source: SORT (Bewley et al., 2016): boxes that move on as they did, and the assignment by how much they overlap;
-ByteTrack (Zhang et al., 2022): detections of low score keep tracks alive, and begin none.
+Source: SORT (Bewley et al., 2016): boxes move with constant velocity and are assigned by their overlap; ByteTrack
+(Zhang et al., 2022): detections with a low score keep tracks alive, but do not start them.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ class TrackerSettings:
     Attributes:
         high: detections with at least this score start tracks, and are matched first (``track_high_thresh``).
         low: detections with a lower score are ignored (``track_low_thresh``).
-        new: the least score that begins a track (``new_track_thresh``).
-        match: how little boxes may overlap and belong together: 1 - IoU is at most this (``match_thresh``).
+        new: the minimum score that starts a track (``new_track_thresh``).
+        match: the maximum 1 - IoU of two boxes that belong to the same object (``match_thresh``).
         patience: how long a track without a detection is kept, seconds (``track_buffer``, 30 images at 30 Hz).
-        births: the number of consecutive images that must show an object before it gets an id.
+        births: the number of consecutive images that must show an object before it gets an ID.
     """
 
     high: float = 0.25
@@ -49,7 +49,8 @@ class TrackerSettings:
 class _Track:
     """A tracked object: centre and size (x, y, width, height), their velocities and covariance.
 
-    The four are filtered alike and apart: variances of value and speed, and their covariance.
+    Each of the four values has its own filter with the same model: the variances of value and velocity, and their
+    covariance.
     """
 
     name: str
@@ -114,11 +115,11 @@ class Tracker:
         """Update the tracks with the detections of an image.
 
         Args:
-            detections: all detections, including those of low score.
-            time: the time of the image, seconds. A jump back drops all tracks; ids continue.
+            detections: all detections, including those with a low score.
+            time: the time of the image, seconds. A jump back drops all tracks, but IDs continue.
 
         Returns:
-            The id of each detection; 0 for one without an id yet.
+            The ID of each detection; 0 for one without an ID yet.
         """
         settings = self._settings
         seconds = 0.0 if self._time is None else time - self._time
@@ -173,7 +174,7 @@ class Tracker:
 
 
 def overlaps(first: NDArray[np.floating], second: NDArray[np.floating]) -> Floats:
-    """Return the intersection over union of each of some boxes with each of others.
+    """Return the IoU of every pair of boxes from two sets.
 
     Args:
         first: left, top, right, bottom: shape ``(n, 4)``.

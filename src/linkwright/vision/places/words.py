@@ -1,4 +1,4 @@
-"""Objects in words: parsing requests, and describing visible objects, in English and Chinese."""
+"""Parse requests for objects, and describe visible objects, in English and Chinese."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ class ObjectRequest:
 
     Attributes:
         noun: its name, as `object_name` returns it; empty for any object of that colour.
-        colour: one of `COLOURS`; None for any.
+        colour: one of `COLOURS`; None for any colour.
         text: the spoken words, without filler words.
     """
 
@@ -106,10 +106,11 @@ class ObjectRequest:
         return ENGLISH if self.text.isascii() else CHINESE
 
     def is_it(self, name: str, colour: str | None, shape: float = 1.0, score: float = 1.0) -> bool:
-        """Return whether an object of a class is meant.
+        """Return whether the request means an object of a class.
 
-        A class may have its colour in its name, as ``red_ball`` does. One that is only a colour may be any object of
-        that colour, and a ball if it is about as wide as high. A ball of any colour may also be a round patch.
+        A class may have its colour in its name, as ``red_ball`` does. A class that is only a colour matches any object
+        of that colour, and matches a ball if the patch is about as wide as high. A ball of any colour may also be a
+        round patch.
 
         Args:
             name: the class.
@@ -134,7 +135,7 @@ class ObjectRequest:
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """A seen object: its class, its colour if known, and its distances ahead and to the left of the robot in metres."""
+    """A seen object: class, colour if known, and distances ahead and to the left of the robot in metres."""
 
     name: str
     colour: str | None
@@ -143,7 +144,7 @@ class Sighting:
 
 
 def object_name(name: str) -> str:
-    """Return a common name for all names of an object: lower case, singular; ``ball`` for ``football`` and ``球``."""
+    """Return the common name of an object: lower case, singular; ``ball`` for ``football`` and ``球``."""
     plain = name.strip().lower()
     if plain in _FIRST:
         return _FIRST[plain]
@@ -168,7 +169,7 @@ def requested(text: str) -> ObjectRequest | None:
 
 
 def described(sightings: Iterable[Sighting], language: str) -> str:
-    """Return a sentence about seen objects, nearest first: *I see a red ball 1.2 m ahead and two crates*."""
+    """Describe seen objects, nearest first: *I see a red ball 1.2 m ahead and two crates*."""
     groups: dict[str, list[Sighting]] = {}
     for sighting in sorted(sightings, key=lambda sighting: hypot(sighting.ahead, sighting.left)):
         groups.setdefault(named(sighting.name, sighting.colour, language), []).append(sighting)
@@ -180,7 +181,7 @@ def described(sightings: Iterable[Sighting], language: str) -> str:
 
 
 def named(name: str, colour: str | None, language: str) -> str:
-    """Return an object with its colour: *red ball*, 红色的球."""
+    """Return the name of an object with its colour: *red ball*, 红色的球."""
     words = [word for word in words_of(name) if word not in SPELLINGS]
     shown = named_colour(name) or colour
     noun = " ".join(words)
@@ -192,7 +193,7 @@ def named(name: str, colour: str | None, language: str) -> str:
 
 
 def answer(event: Answer, request: ObjectRequest, language: str) -> str:
-    """Return the answer to a request. It names the object as in the request, or translated."""
+    """Return the answer to a request, which names the object as in the request, or translated."""
     name = request.text if request.language == language else named(request.noun, request.colour, language)
     return localized(_ANSWERS[event](name), language)
 

@@ -1,1 +1,4 @@
-"""Training networks: on labelled images, evaluated, exported with a card. Only training itself needs PyTorch."""
+"""Train networks on labelled images, evaluate them, and export them with a card.
+
+Only the training itself needs PyTorch.
+"""

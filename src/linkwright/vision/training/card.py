@@ -1,4 +1,4 @@
-"""The card of a network: its training, its figures, and its failures."""
+"""The card of a network: its training, its results, and its failures."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from pathlib import Path
 from linkwright.vision.evaluation import ClassFigures, Evaluation
 
 _WEAK = 0.8  # the recall below which a class is listed as a failure
-_OFTEN = 0.05  # the share of a class confused with another one, above which it is listed
+_OFTEN = 0.05  # the share of a class confused with another one, above which the confusion is listed
 
 
 @dataclass(frozen=True, slots=True)
 class Examination:
-    """The figures of a network on some images.
+    """The results of a network on a set of images.
 
     Attributes:
         title: the description of the images.
-        figures: how well it does on them.
+        figures: the results.
         origin: the worlds and options of their dataset; empty if unknown.
     """
 
@@ -29,7 +29,7 @@ class Examination:
 
 
 def card(name: str, facts: Mapping[str, str], examinations: Sequence[Examination]) -> str:
-    """Write the card as Markdown.
+    """Return the card as Markdown.
 
     Args:
         name: the name of the network.
@@ -48,7 +48,7 @@ def card(name: str, facts: Mapping[str, str], examinations: Sequence[Examination
 
 
 def made_of(folder: Path) -> dict[str, str]:
-    """Return the part of a dataset's card about its making; empty for a dataset of another program."""
+    """Return the card entries on how a dataset was made; empty for a dataset of another program."""
     making = _making(folder)
     if making is None:
         return {}
@@ -58,11 +58,11 @@ def made_of(folder: Path) -> dict[str, str]:
 
 
 def origin(folder: Path, lesson: Path) -> str:
-    """Return the worlds of a dataset's images, and whether the network was trained on them, too.
+    """Describe the worlds of a dataset, and whether the network was also trained on them.
 
     Args:
-        folder: of the dataset that judges.
-        lesson: of the one that taught.
+        folder: the folder of the dataset used for evaluation.
+        lesson: the folder of the dataset used for training.
     """
     making, taught = _making(folder), _making(lesson)
     if making is None:
@@ -77,7 +77,7 @@ def origin(folder: Path, lesson: Path) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Making:
-    """The making of a dataset: worlds as pairs of name and SHA-256, options in words, added files."""
+    """A record of how a dataset was made: worlds as pairs of name and SHA-256, options in words, added files."""
 
     worlds: frozenset[tuple[str, str]]
     options: str
@@ -97,7 +97,7 @@ def _making(folder: Path) -> _Making | None:
 
 
 def table(figures: Evaluation) -> list[str]:
-    """Return the figures of all classes, as lines of a Markdown table."""
+    """Return the results of all classes as lines of a Markdown table."""
     lines = ["| class | objects | mAP50 | mAP50-95 | precision | recall |", f"| --- |{' ---: |' * 5}"]
     lines += [_row(row) for row in figures.classes]
     objects = sum(row.objects for row in figures.classes)

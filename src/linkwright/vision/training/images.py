@@ -1,4 +1,4 @@
-"""Images as training samples: of one size, with random augmentation."""
+"""Prepare images as training samples: one size, with random augmentation."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.training.options import View
 from linkwright.vision.training.reading import Labelled
 
-_FEWEST_PIXELS = 3.0  # an object that is narrower after augmentation is ignored
-_LEAST_SHARE = 0.3  # as is one with a smaller remaining share
+_FEWEST_PIXELS = 3.0  # an object narrower than this after augmentation is ignored
+_LEAST_SHARE = 0.3  # an object with a smaller share of its box left in the image is ignored
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,9 +25,9 @@ class Lesson:
     """Images of one size with their labels.
 
     Attributes:
-        images: shape ``(n, height, width, 3)``, red, green, blue.
-        objects: for each image shape ``(m, 5)``: class, left, top, right, bottom in its pixels. The class of an ignored
-            object is -2 for class 0, -3 for class 1, ...
+        images: shape ``(n, height, width, 3)``, RGB.
+        objects: for each image an array of shape ``(m, 5)``: class, left, top, right and bottom in pixels. An ignored
+            object has class -2 instead of 0, -3 instead of 1, and so on.
     """
 
     images: NDArray[np.uint8]
@@ -35,10 +35,10 @@ class Lesson:
 
 
 def read_image(labelled: Labelled) -> NDArray[np.uint8]:
-    """Read an image: pixels, shape ``(height, width, 3)``, red, green, blue.
+    """Return the pixels of a labelled image: shape ``(height, width, 3)``, RGB.
 
     Raises:
-        LinkwrightError: VISION305, it is not an image.
+        LinkwrightError: VISION305, the file is not an image.
     """
     cv2 = load_opencv()
     data: NDArray[np.uint8] = np.fromfile(labelled.path, np.uint8)
@@ -51,10 +51,10 @@ def read_image(labelled: Labelled) -> NDArray[np.uint8]:
 
 
 def read_lesson(labelled: Sequence[Labelled], width: int, height: int) -> Lesson:
-    """Read images into memory, scaled to one size with grey borders, as detectors do it.
+    """Read images into memory, letterboxed to one size with grey borders, as detectors do.
 
     Raises:
-        LinkwrightError: VISION305, one is not an image.
+        LinkwrightError: VISION305, one of the files is not an image.
     """
     images: NDArray[np.uint8] = np.zeros((len(labelled), height, width, 3), np.uint8)
     objects: list[NDArray[np.float32]] = [np.zeros((0, 5), np.float32)] * len(labelled)
@@ -94,7 +94,7 @@ def repeats(lesson: Lesson, classes: int) -> NDArray[np.float64]:
 
 
 def repeated(times: NDArray[np.float64], chance: np.random.Generator) -> NDArray[np.int64]:
-    """Return the indices of images, each repeated; fractions are drawn at random."""
+    """Return image indices, each repeated the given number of times; fractions are rounded randomly."""
     whole: NDArray[np.int64] = np.floor(times + chance.random(len(times))).astype(np.int64)
     return np.repeat(np.arange(len(times)), whole)
 
@@ -126,10 +126,10 @@ def changed(
     across, down = scale * aspect, scale / aspect
     middle = chance.uniform(0, 1, 2) * (width, height)
     asked = objects[objects[:, 0] >= 0]
-    if len(asked) and chance.random() < 0.7:  # the part shows an object
+    if len(asked) and chance.random() < 0.7:  # centre the crop near an object
         some = asked[int(chance.integers(len(asked)))]
         middle = (some[1:3] + some[3:5]) / 2 + chance.uniform(-0.4, 0.4, 2) * size / np.array((across, down))
-    # The part is within the image; a smaller image is padded with grey.
+    # Keep the crop within the image; an image smaller than the crop is padded with grey.
     room = np.array((width, height)) - np.array(size) / (across, down)
     corner = np.clip(middle - np.array(size) / (across, down) / 2, np.minimum(room, 0), np.maximum(room, 0))
     left, top = corner
@@ -162,7 +162,7 @@ def _in_other_light(image: NDArray[np.uint8], chance: np.random.Generator) -> ND
 
 
 def _moved(objects: NDArray[np.float32], turn: NDArray[np.float32], width: int, height: int) -> NDArray[np.float32]:
-    """Return the boxes in the moved image; boxes that are mostly outside are marked as ignored."""
+    """Return the boxes in the transformed image, with those that are mostly outside marked as ignored."""
     x = objects[:, 1::2] * turn[0, 0] + turn[0, 2]
     y = objects[:, 2::2] * turn[1, 1] + turn[1, 2]
     whole = np.stack((x.min(1), y.min(1), x.max(1), y.max(1)), 1) if len(objects) else np.zeros((0, 4), np.float32)

@@ -1,4 +1,4 @@
-"""PyTorch, which the extra ``train`` brings."""
+"""Checks for PyTorch, which the extra ``train`` installs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ def need_pytorch() -> None:
     """Check that PyTorch is installed.
 
     Raises:
-        LinkwrightError: VISION301 it is not installed, or its ONNX exporter is not.
+        LinkwrightError: VISION301, PyTorch or its ONNX exporter is not installed.
     """
     try:
         for name in ("torch", "onnx"):

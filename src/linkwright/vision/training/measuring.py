@@ -1,4 +1,4 @@
-"""Running a detector on labelled images and evaluating it."""
+"""Run a detector on labelled images and evaluate it."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def measure(model: str | Path, names: Sequence[str], labelled: Sequence[Labelled
 
     Args:
         model: an ONNX file, or the name of a detector.
-        names: of the classes of the images.
+        names: the names of the classes in the labels.
         labelled: the images.
 
     Raises:
-        LinkwrightError: the detector cannot be made; VISION305, an image is broken.
+        LinkwrightError: the detector cannot be created; VISION305, an image is broken.
     """
     detector = make_detector(str(model), DetectorOptions())
     found, truth = [], []

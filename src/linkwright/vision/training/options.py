@@ -1,4 +1,4 @@
-"""Options of a training."""
+"""The options of a training."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ _WHOLE = 0.8, 1.25
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """The part of an image that is shown.
+    """The size of a crop of an image, and the range of scales.
 
     Attributes:
         size: width and height, in pixels.
-        scales: the smallest and the largest that an image is scaled by.
+        scales: the smallest and the largest factor that an image is scaled by.
     """
 
     size: tuple[int, int]
@@ -24,27 +24,27 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """Options of a training.
+    """The options of a training.
 
     Attributes:
         dataset: the folder of the training dataset.
         output: the output folder: ``NAME.onnx``, ``NAME.md`` (the card), ``last.pt`` (to resume from).
         name: the name of the network.
         epochs: the number of epochs; each uses images with rare classes more than once.
-        whole_epochs: the number of last epochs that use full images of the size used in evaluation.
-        batch: the number of images in a step.
+        whole_epochs: the number of final epochs that use full images, in the size used for evaluation.
+        batch: the number of images per step.
         rate: the highest learning rate.
         width: the width of the network's input, in pixels, a multiple of 32.
-        height: likewise.
+        height: the height of the network's input, in pixels, a multiple of 32.
         channels: the channels of the first convolution; the others have multiples of it.
         seed: the random seed.
         threads: the number of CPU threads.
-        precision: the number format of training: ``float32``, or ``bfloat16`` where 16 bits are enough; weights have
-            32.
-        device: the device of training: ``auto``, the first CUDA GPU that PyTorch sees, else the CPU; ``cpu``.
+        precision: the number format of training: ``float32``, or ``bfloat16`` where 16 bits are enough; weights always
+            have 32.
+        device: the training device: ``auto`` for the first CUDA GPU that PyTorch sees, or else the CPU; ``cpu``.
         weights: the ONNX file of an earlier training to start from; None for random weights.
-        resume: whether to resume from ``last.pt`` in the folder.
-        held_out: the folders of datasets that are only used for evaluation, with their split ``test``, or else ``val``.
+        resume: whether to resume from ``last.pt`` in the output folder.
+        held_out: the folders of datasets used only for evaluation, with their split ``test``, or else ``val``.
         command: the user's command line for the card, without ``--resume``, which does not change the result.
     """
 
@@ -68,9 +68,9 @@ class Options:
     command: str = ""
 
     def view(self, epoch: int) -> View:
-        """Return the view in an epoch, from 0: parts of the images at first, full images in the end.
+        """Return the view for an epoch, counted from 0: crops at first, full images in the end.
 
-        Features depend little on the size of an image, so small parts teach nearly as much as full images in a quarter
+        Features depend little on the size of an image, so small crops teach nearly as much as full images in a quarter
         of the time. Full images are only needed for objects that fill much of an image.
         """
         if epoch >= self.epochs - self.whole_epochs:

@@ -1,8 +1,8 @@
-"""Reading datasets in the folders of YOLO trainers, which `linkwright dataset` writes.
+"""Read datasets in the YOLO folder layout, which `linkwright dataset` writes.
 
-A YAML file in the folder names the classes and the folders of the images. Beside ``images`` is ``labels``, with a text
-file for each image and a line in it for each object: its class, and the centre, width and height of its box as shares
-of the image. An image without such a file has no objects.
+A YAML file in the folder names the classes and the image folders. Next to ``images`` is ``labels``, with a text file
+for each image. Each of its lines describes an object: its class, and the centre, width and height of its box as
+fractions of the image. An image without a text file has no objects.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Labelled:
     Attributes:
         path: the path of the image.
         classes: shape ``(n,)``, indices in the dataset's names.
-        boxes: shape ``(n, 4)``: left, top, right, bottom, as shares of the image's width and height.
+        boxes: shape ``(n, 4)``: left, top, right, bottom, as fractions of the image's width and height.
         ignored: shape ``(n,)``, whether too little of the object is visible for it to count.
     """
 
@@ -51,12 +51,12 @@ class Labelled:
 
 @dataclass(frozen=True, slots=True)
 class Dataset:
-    """A dataset in splits: one to train on, another to evaluate on.
+    """A dataset divided into splits for training and evaluation.
 
     Attributes:
-        folder: the folder.
+        folder: the folder of the dataset.
         names: the names of the classes.
-        splits: the folders of images by the name of the split: ``train``, ``val``, perhaps ``test``.
+        splits: the image folders by the name of the split: ``train``, ``val``, optionally ``test``.
     """
 
     folder: Path
@@ -64,10 +64,10 @@ class Dataset:
     splits: Mapping[str, tuple[Path, ...]]
 
     def read(self, split: str) -> list[Labelled]:
-        """Return the images of a split, sorted by their paths, with their labels.
+        """Return the images of a split with their labels, in the order of their paths.
 
         Raises:
-            LinkwrightError: VISION303, there is no such split, or no image in it; VISION304, a label that cannot be.
+            LinkwrightError: VISION303, the split does not exist or has no images; VISION304, a label is invalid.
         """
         if split not in self.splits:
             known = quoted_names(sorted(self.splits), " and ")
@@ -97,7 +97,7 @@ def open_dataset(folder: Path) -> Dataset:
         folder: the folder, or its YAML file.
 
     Raises:
-        LinkwrightError: VISION302, it is not a dataset.
+        LinkwrightError: VISION302, the folder is not a dataset.
     """
     file = folder if folder.suffix in {".yaml", ".yml"} else _description(folder)
     try:
@@ -124,7 +124,7 @@ def open_dataset(folder: Path) -> Dataset:
 
 
 def _description(folder: Path) -> Path:
-    """Read the YAML file of a dataset."""
+    """Return the path of a dataset's YAML file."""
     if not folder.is_dir():
         raise _no_dataset(folder, phrase("it does not exist"), missing_file_hint(folder))
     files = sorted(folder.glob("*.y*ml"))
@@ -149,10 +149,12 @@ def _no_dataset(path: Path, reason: Phrase | Any, hint: Phrase | None = None) ->
 
 
 def _hidden(file: Path, names: tuple[str, ...]) -> dict[str, list[list[float]]]:
-    """Return the ignored regions of COCO's list of a split (``iscrowd``), for which the texts have no word.
+    """Return the ignored regions (``iscrowd``) of a split's COCO file.
+
+    YOLO label files cannot express them.
 
     Returns:
-        Name of the image -> class, left, top, right, bottom as shares; nothing where there is no such list.
+        For each image name: class, left, top, right, bottom as fractions; empty if the COCO file does not exist.
     """
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
@@ -175,10 +177,10 @@ def _hidden(file: Path, names: tuple[str, ...]) -> dict[str, list[list[float]]]:
 
 
 def _labelled(path: Path, classes: int, hidden: Sequence[list[float]]) -> Labelled:
-    """Read the labels of an image, with its ignored regions.
+    """Read the labels of an image, and add its ignored regions.
 
     Raises:
-        LinkwrightError: VISION304, the text has an invalid label.
+        LinkwrightError: VISION304, the label file has an invalid label.
     """
     text = labels_of(path)
     try:
@@ -199,7 +201,7 @@ def _labelled(path: Path, classes: int, hidden: Sequence[list[float]]) -> Labell
 
 
 def labels_of(image: Path) -> Path:
-    """Return the file with an image's labels: the last folder named ``images`` of its path is ``labels`` there."""
+    """Return the path of an image's label file: its last folder named ``images`` becomes ``labels``."""
     parts = list(image.parts)
     for place in range(len(parts) - 2, -1, -1):
         if parts[place] == "images":

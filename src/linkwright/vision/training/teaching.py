@@ -1,4 +1,4 @@
-"""From a dataset to a network with its card: training, export, and evaluation of the exported file."""
+"""Turn a dataset into a network with its card: train, export, and evaluate the exported file."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class TrainingResult:
 
     Attributes:
         network: the ONNX file.
-        card: its card.
-        examinations: the evaluations: on the split ``val`` of the training dataset, then on each held-out dataset.
-        interrupted: whether it ended before its last epoch; the network is the best until then.
+        card: the card of the network.
+        examinations: the evaluations on the split ``val`` of the training dataset, then on each held-out dataset.
+        interrupted: whether the training ended before its last epoch; the network is then the best so far.
     """
 
     network: Path
@@ -40,17 +40,17 @@ class TrainingResult:
 
 
 def teach(options: Options, on_epoch: Callable[[Epoch], None]) -> TrainingResult:
-    """Train a network, export it, evaluate the file, and write its card beside it.
+    """Train a network, export it, evaluate the file, and write its card next to it.
 
     Args:
         options: the options.
         on_epoch: called after each epoch.
 
     Raises:
-        LinkwrightError: VISION301 PyTorch is not installed, VISION302 to VISION305 see `open_dataset` and
-            `Dataset.read`, VISION306 there is no checkpoint to resume from, VISION307 the folder cannot be written,
+        LinkwrightError: VISION301 PyTorch is not installed; VISION302 to VISION305 see `open_dataset` and
+            `Dataset.read`; VISION306 there is no checkpoint to resume from; VISION307 the folder cannot be written;
             VISION308 the initial weights cannot be used.
-        KeyboardInterrupt: it was interrupted before the first checkpoint.
+        KeyboardInterrupt: training was interrupted before the first checkpoint.
     """
     need_pytorch()
     from linkwright.vision.training.images import read_lesson
@@ -110,11 +110,11 @@ def judge(model: str, folder: Path, split: str | None) -> Evaluation:
 
     Args:
         model: an ONNX file, or the name of a detector.
-        folder: of the dataset.
-        split: which of its splits; when left out, ``test``, or else ``val``.
+        folder: the folder of the dataset.
+        split: the split to use; None for ``test``, or else ``val``.
 
     Raises:
-        LinkwrightError: the detector cannot be made; VISION302 to VISION305 see `open_dataset` and `Dataset.read`.
+        LinkwrightError: the detector cannot be created; VISION302 to VISION305 see `open_dataset` and `Dataset.read`.
     """
     dataset = open_dataset(folder)
     return measure(model, dataset.names, dataset.read(split or _judging_split(dataset)))
@@ -127,7 +127,7 @@ def _judging_split(dataset: Dataset) -> str:
 def _facts(
     options: Options, dataset: Dataset, lesson: Sequence[Labelled], epochs: int, best: int, network: Network
 ) -> dict[str, str]:
-    """Return the facts on the making, for the card."""
+    """Return the facts about the training for the card."""
     parameters = sum(parameter.numel() for parameter in network.parameters())
     asked = sum(int((~labelled.ignored).sum()) for labelled in lesson)
     return {
@@ -150,7 +150,7 @@ def _beginning(weights: Path | None) -> dict[str, str]:
         return {}
     try:
         return {"started from": f"{weights.name}, sha256 {hashlib.sha256(weights.read_bytes()).hexdigest()}"}
-    except OSError:  # gone before the training was resumed
+    except OSError:  # the file was deleted before the training was resumed
         return {"started from": weights.name}
 
 

@@ -1,1 +1,1 @@
-"""The part that imports PyTorch; imported only after `linkwright.vision.training.library` has found it."""
+"""The code that imports PyTorch; import it only after `linkwright.vision.training.library` has found PyTorch."""

@@ -1,4 +1,4 @@
-"""The training: epochs, a moving average of the weights that is evaluated, and checkpoints."""
+"""The training loop: epochs, a moving average of the weights for evaluation, and checkpoints."""
 
 from __future__ import annotations
 
@@ -29,21 +29,21 @@ from linkwright.vision.training.learning.starting import load_weights
 from linkwright.vision.training.measuring import LIMITS
 from linkwright.vision.training.options import Options
 
-_WARM_UP = 100  # steps in which the rate grows to its highest
-_LEAST_RATE = 0.02  # of the highest, at the end
-_STEEPEST = 10.0  # the norm that gradients are cut to
-_MEASURED = 128  # images that the statistics of weights from a file are measured with
-_SMOOTHING = 0.998  # of the moving average, a step, once it is warmed up
+_WARM_UP = 100  # the number of steps over which the learning rate grows to its maximum
+_LEAST_RATE = 0.02  # the final learning rate, as a share of the maximum
+_STEEPEST = 10.0  # the norm that gradients are clipped to
+_MEASURED = 128  # the number of images used to measure layer statistics for weights from a file
+_SMOOTHING = 0.998  # the decay of the moving average per step, after its warm-up
 
 
 @dataclass(frozen=True, slots=True)
 class Epoch:
-    """The figures of an epoch.
+    """The results of an epoch.
 
     Attributes:
         number: the number of the epoch, from 1.
-        losses: the mean losses of boxes and of scores.
-        judged: the evaluation of the smoothed network on the validation split; None if it was skipped.
+        losses: the mean box loss and the mean score loss.
+        judged: the evaluation of the averaged network on the validation split; None if it was skipped.
     """
 
     number: int
@@ -65,12 +65,12 @@ class Course:
         options: the options.
         shape: the shape of the network.
         network: the network that is trained.
-        smooth: its moving average, which is evaluated.
+        smooth: the moving average of the network, which is evaluated.
         best: the best weights of the moving average.
-        best_map: their mAP50-95; -1 before the first evaluation.
-        best_epoch: their epoch.
+        best_map: the mAP50-95 of the best weights; -1 before the first evaluation.
+        best_epoch: the epoch of the best weights.
         epoch: the number of finished epochs.
-        seconds: the time they took.
+        seconds: the duration of the finished epochs.
     """
 
     def __init__(self, names: Sequence[str], options: Options, lesson: Lesson, exam: Lesson) -> None:
@@ -93,13 +93,13 @@ class Course:
         self._optimizer = Optimizer(self.network, options.rate)
 
     def run(self, on_epoch: Callable[[Epoch], None]) -> None:
-        """Train until the last epoch, with a checkpoint after each.
+        """Train until the last epoch, and write a checkpoint after each epoch.
 
         Args:
             on_epoch: called after each epoch.
 
         Raises:
-            KeyboardInterrupt: it was interrupted; `best` has the best weights so far.
+            KeyboardInterrupt: training was interrupted; `best` has the best weights so far.
         """
         while self.epoch < self.options.epochs:
             began = time.monotonic()
@@ -114,17 +114,17 @@ class Course:
 
     @property
     def place(self) -> str:
-        """The device: the name of the GPU, or the kind of the processor."""
+        """The training device: the name of the GPU, or the processor's architecture."""
         return torch.cuda.get_device_name(self._device) if self._device.type == "cuda" else platform.machine()
 
     def best_network(self) -> Network:
-        """Return the network with the best figures on the validation split, in evaluation mode."""
+        """Return the network with the best results on the validation split, in evaluation mode."""
         network = deepcopy(self.smooth)
         network.load_state_dict(self.best)
         return network.cpu()
 
     def _is_evaluated(self) -> bool:
-        """Return whether this epoch ends with an evaluation: each fifth does, and the last ones."""
+        """Return whether this epoch ends with an evaluation: every fifth one does, and the last ones."""
         last = self.options.epochs
         return self.epoch % 5 == 0 or self.epoch > last - 3
 
@@ -149,7 +149,7 @@ class Course:
         return float(mean[0]), float(mean[1])
 
     def _batches(self, epoch: int) -> Iterator[tuple[NDArray[np.int64], int]]:
-        """Yield the batches of an epoch, in an order that depends on seed and epoch only."""
+        """Yield the batches of an epoch, in an order that depends only on the seed and the epoch."""
         chance = np.random.default_rng((self.options.seed, epoch))
         order = chance.permutation(repeated(self._repeats, chance))
         size = min(self.options.batch, len(order))
@@ -176,7 +176,7 @@ class Course:
 
     @torch.no_grad()
     def _follow(self) -> None:
-        """Update the moving average."""
+        """Update the moving average of the weights."""
         keep = min(_SMOOTHING, (1 + self._step) / (10 + self._step))
         here = self.network.state_dict()
         for name, value in self.smooth.state_dict().items():
@@ -186,7 +186,7 @@ class Course:
                 value.copy_(here[name])
 
     def judge(self) -> Evaluation:
-        """Evaluate the moving average."""
+        """Evaluate the moving average on the validation split."""
         return evaluate(self.names, *self._examine(self.smooth))
 
     def balance(self, network: Network) -> float:
@@ -195,7 +195,7 @@ class Course:
 
     @torch.no_grad()
     def _examine(self, network: Network) -> tuple[list[GroundTruth], list[Detections]]:
-        """Return the labels of the validation split, and a network's detections."""
+        """Return the labels of the validation split and the network's detections."""
         found: list[Detections] = []
         device = next(network.parameters()).device
         for start in range(0, len(self._exam.objects), self.options.batch):
@@ -207,7 +207,7 @@ class Course:
         return [_truth(objects) for objects in self._exam.objects], found
 
     def _found(self, boxes: NDArray[np.float32], scores: NDArray[np.float32]) -> Detections:
-        """Return the detections in one image, of boxes (cells, 4) and scores (cells, classes)."""
+        """Return the detections in one image from boxes (cells, 4) and scores (cells, classes)."""
         cells, kinds = np.nonzero(scores >= LIMITS.threshold)
         confidences: NDArray[np.float32] = scores[cells, kinds]
         classes: NDArray[np.int32] = kinds.astype(np.int32)
@@ -235,17 +235,17 @@ class Course:
         draft.replace(path)
 
     def begin_with(self, path: Path) -> None:
-        """Begin with the weights of an ONNX file, see `load_weights`."""
+        """Start from the weights of an ONNX file, see `load_weights`."""
         chosen, size = self._lesson.images[:_MEASURED], self.options.batch
         batches = (_tensor(chosen[start : start + size], self._device) for start in range(0, len(chosen), size))
         load_weights(self.network, self.names, path, batches)
         self.smooth.load_state_dict(self.network.state_dict())
 
     def load(self, path: Path) -> None:
-        """Continue from a checkpoint.
+        """Restore the training from a checkpoint.
 
         Raises:
-            LinkwrightError: VISION306, the file is not a checkpoint, or is one of another network.
+            LinkwrightError: VISION306, the file is not a checkpoint, or belongs to a different network.
         """
         try:
             state: dict[str, Any] = torch.load(path, map_location=self._device, weights_only=True)
@@ -268,7 +268,7 @@ class Course:
 
 
 def _tensor(images: NDArray[np.uint8], device: torch.device) -> Tensor:
-    """Return images, shape (batch, height, width, 3), as a tensor for the network."""
+    """Convert images of shape (batch, height, width, 3) to an input tensor for the network."""
     return torch.from_numpy(images).to(device).permute(0, 3, 1, 2).float().div_(255)
 
 

@@ -1,4 +1,4 @@
-"""Exporting a network to an ONNX file in the layout of YOLOv8."""
+"""Export a network to an ONNX file in the layout of YOLOv8."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from torch import Tensor, nn
 from linkwright.vision.training.learning.network import STRIDES, Network
 
 _OPSET = 17
-_LARGE = 64  # numbers; those of fewer stay as they are
+_LARGE = 64  # weights with fewer numbers than this are not halved
 
 
 class _Decoded(nn.Module):
-    """Concatenates boxes and scores as YOLOv8 does."""
+    """A network whose output concatenates boxes and scores as YOLOv8 does."""
 
     def __init__(self, network: Network, balance: float) -> None:
         super().__init__()
@@ -43,23 +43,23 @@ def to_onnx(
     facts: Mapping[str, str],
     balance: float = 0.5,
 ) -> bytes:
-    """Export a network to an ONNX file.
+    """Export a network as the content of an ONNX file.
 
-    Its input is one image of this size, its output ``[1, 4 + classes, cells]``. Weights are stored with 16 bits and
-    used with 32, which halves the file and changes scores by less than a thousandth.
+    The input is one image of the given size, the output has shape ``[1, 4 + classes, cells]``. Weights are stored with
+    16 bits and used with 32, which halves the file and changes scores by less than a thousandth.
 
     Args:
-        network: the one to export.
+        network: the network to export.
         names: the names of its classes.
         width: the width of its images, a multiple of 32.
-        height: likewise.
-        facts: further metadata of the file.
-        balance: the network's score that becomes 0.5; the others shift with it and keep their order.
+        height: the height of its images, a multiple of 32.
+        facts: further metadata for the file.
+        balance: the network's score that becomes 0.5; all other scores shift accordingly and keep their order.
     """
     file = BytesIO()
     image = torch.zeros(1, 3, height, width)
     with warnings.catch_warnings():
-        # The newer exporter needs one more library, and gives the same graph.
+        # The newer exporter, which the warning recommends, needs another library and produces the same graph.
         warnings.simplefilter("ignore")
         torch.onnx.export(
             _Decoded(network, balance).eval(),
@@ -89,7 +89,7 @@ def to_onnx(
 
 
 def _halve(model: Any) -> None:
-    """Store weights with 16 bits, widened when the file is loaded."""
+    """Store weights as 16-bit floats that the graph casts back to 32 bits."""
     casts = []
     for weights in model.graph.initializer:
         values = numpy_helper.to_array(weights)

@@ -1,7 +1,7 @@
-"""Assigning cells to objects, and the loss.
+"""Assign cells to objects, and compute the loss.
 
-The cells of an object are those that already predict it best, by score and overlap together, and the more certain a
-cell shall be the better its box is (task-aligned assignment, Feng and others 2021).
+An object is assigned to the cells that already predict it best, judged by score and overlap combined. The better a
+cell's box is, the higher its target score (task-aligned assignment, Feng and others 2021).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from torch.nn import functional
 
 _SCORE_POWER, _OVERLAP_POWER = 1.0, 4.0
 _CELLS_PER_OBJECT = 10
-_NEAR = 8.0  # pixels around the centre of an object smaller than a cell in which cells may be assigned to it
+_NEAR = 8.0  # for small objects: cells within this many pixels of the centre may be assigned
 _BOX_WEIGHT, _SCORE_WEIGHT = 4.0, 1.0
 _SMALL = 1e-7
 
@@ -27,7 +27,7 @@ class Assignment:
         boxes: shape (batch, cells, 4), pixels; meaningless for cells without an object.
         scores: shape (batch, cells, classes), between 0 and 1.
         taken: shape (batch, cells), whether an object is assigned to the cell.
-        unasked: the same shape, whether the cell has no target, because its object is ignored.
+        unasked: shape (batch, cells), whether the cell has no target because its object is ignored.
     """
 
     boxes: Tensor
@@ -37,15 +37,15 @@ class Assignment:
 
 
 def overlaps(first: Tensor, second: Tensor) -> tuple[Tensor, Tensor]:
-    """Return the overlap of boxes.
+    """Return the IoU and the generalised IoU of boxes.
 
     Args:
         first: shape (..., 4), left, top, right, bottom.
-        second: one that broadcasts with it.
+        second: boxes whose shape broadcasts with `first`.
 
     Returns:
-        The intersection over the union, and the generalised one (Rezatofighi and others 2019), which also tells boxes
-        apart that do not touch; without the last axis.
+        The intersection over union, and the generalised one (Rezatofighi and others 2019), which also differs between
+        boxes that do not touch. Both have the broadcast shape without the last axis.
     """
     inner = (torch.minimum(first[..., 2:], second[..., 2:]) - torch.maximum(first[..., :2], second[..., :2])).clamp(0)
     outer = (torch.maximum(first[..., 2:], second[..., 2:]) - torch.minimum(first[..., :2], second[..., :2])).clamp(0)
@@ -62,10 +62,10 @@ def assign(boxes: Tensor, logits: Tensor, middles: Tensor, objects: Tensor) -> A
 
     Args:
         boxes: the boxes of the network, shape (batch, cells, 4).
-        logits: the same, shape (batch, cells, classes).
-        middles: of the cells, shape (cells, 2).
-        objects: shape (batch, most, 5): class, left, top, right, bottom; class -1 where an image has fewer, and
-            less where an object is to be ignored.
+        logits: the class logits of the network, shape (batch, cells, classes).
+        middles: the centres of the cells, shape (cells, 2).
+        objects: shape (batch, most, 5): class, left, top, right, bottom. Class -1 pads images with fewer objects; a
+            class below -1 marks an ignored object.
     """
     real = objects[..., 0] >= 0
     kinds = objects[..., 0].clamp(0).long()
@@ -80,7 +80,7 @@ def assign(boxes: Tensor, logits: Tensor, middles: Tensor, objects: Tensor) -> A
     fit = (fit + _SMALL * iou) * near
     best = fit.topk(min(_CELLS_PER_OBJECT, cells), 2).indices
     chosen = torch.zeros_like(near).scatter_(2, best, value=True) & near & (fit > 0)
-    # A cell that several objects claim is assigned to the one that its box overlaps most.
+    # A cell claimed by several objects is assigned to the object that its box overlaps most.
     wanted = torch.where(chosen, iou, torch.full_like(iou, -1.0))
     most, owner = wanted.max(1)
     taken = most >= 0
@@ -98,12 +98,12 @@ def loss(boxes: Tensor, logits: Tensor, middles: Tensor, objects: Tensor) -> tup
     """Return the loss of a batch; the arguments are those of `assign`.
 
     Returns:
-        The loss, and its parts for boxes and scores, shape (2,), without gradients.
+        The total loss, and its box and score parts, shape (2,), without gradients.
     """
     wanted = assign(boxes, logits, middles, objects)
     whole = wanted.scores.sum().clamp(1.0)
     of_scores = functional.binary_cross_entropy_with_logits(logits, wanted.scores, reduction="none")
-    # Empty cells that are sure of an object weigh most, those that are right already next to nothing.
+    # Empty cells with confident scores weigh most; those that are already right weigh next to nothing.
     weights = torch.where(wanted.scores > 0, wanted.scores, 0.75 * logits.sigmoid().detach() ** 2)
     of_scores = (of_scores * weights * ~wanted.unasked[..., None]).sum() / whole
     weight = wanted.scores.sum(2)[wanted.taken]

@@ -1,9 +1,9 @@
-"""The network: a small anchor-free detector of plain convolutions, which two cores train in an hour.
+"""The network: a small anchor-free detector of plain convolutions that two CPU cores train in an hour.
 
-A backbone of half-stages (as in CSPNet, Wang and others 2019) computes features at 8, 16 and 32 pixels a cell, a
-pyramid passes coarse features to the fine ones and back (PANet, Liu and others 2018), and one head for each scale
-predicts for each cell the distances of the four sides of a box from its centre (FCOS, Tian and others 2019) and the
-class. Depthwise convolutions would have fewer weights, but a processor computes dense ones of few channels in the same
+A backbone of half-stages (as in CSPNet, Wang and others 2019) computes features at 8, 16 and 32 pixels per cell. A
+pyramid passes coarse features to the fine ones and back (PANet, Liu and others 2018). One head per scale predicts for
+each cell the class, and the distances of the four sides of a box from the cell's centre (FCOS, Tian and others 2019).
+Depthwise convolutions would have fewer weights, but a CPU computes dense convolutions with few channels in the same
 time.
 """
 
@@ -21,17 +21,17 @@ STRIDES = (8, 16, 32)
 """Pixels of the image a cell, one for each level of the pyramid."""
 
 _CPU = torch.device("cpu")
-_PRIOR = 0.01  # the initial score of all cells, so that the many empty ones do not dominate the loss
-_FARTHEST = 4.0  # e ** this many strides is the farthest side that a cell can predict
+_PRIOR = 0.01  # the initial score of all cells: low, so that the many empty ones do not dominate the loss
+_FARTHEST = 4.0  # a side is at most e ** this many strides from its cell
 
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """The dimensions of a network; a checkpoint holds them.
+    """The dimensions of a network, as stored in a checkpoint.
 
     Attributes:
         classes: the number of classes.
-        channels: of the first convolution; the other layers have multiples of it.
+        channels: the channels of the first convolution; the other layers have multiples of it.
     """
 
     classes: int
@@ -65,7 +65,7 @@ class HalfStage(nn.Module):
         self.residual = residual
 
     def forward(self, features: Tensor) -> Tensor:
-        """Return the same size, with `outputs` channels."""
+        """Return features of the same height and width, with `outputs` channels."""
         kept, worked = self.split(features).chunk(2, 1)
         for block in self.blocks:
             worked = worked + block(worked) if self.residual else block(worked)
@@ -73,7 +73,7 @@ class HalfStage(nn.Module):
 
 
 class Pooling(nn.Module):
-    """Spatial pyramid pooling, by pooling once, twice and three times (SPPF)."""
+    """Spatial pyramid pooling that chains one, two and three poolings (SPPF)."""
 
     def __init__(self, channels: int) -> None:
         super().__init__()
@@ -82,7 +82,7 @@ class Pooling(nn.Module):
         self.join = Convolution(channels * 2, channels)
 
     def forward(self, features: Tensor) -> Tensor:
-        """Return the same shape."""
+        """Return pooled features of the same shape."""
         seen = [self.narrow(features)]
         for _ in range(3):
             seen.append(self.pool(seen[-1]))
@@ -90,7 +90,7 @@ class Pooling(nn.Module):
 
 
 class Head(nn.Module):
-    """The predictions of one level for each of its cells."""
+    """The layers that predict boxes and classes for each cell of one scale."""
 
     def __init__(self, channels: int, classes: int) -> None:
         super().__init__()
@@ -104,13 +104,13 @@ class Head(nn.Module):
         """Return the logarithms of the distances of the sides, then the logits of the classes."""
         shared = self.shared(features)
         boxes, scores = self.box[0](shared), self.scores[0](shared)
-        # With the 8 digits of bfloat16 a side would be 1 % too long or too short.
+        # With the 8-bit precision of bfloat16 the side distances would be off by up to 1 %.
         with torch.autocast(features.device.type, enabled=False):
             return torch.cat((self.box[1](boxes.float()), self.scores[1](scores.float())), 1).flatten(2)
 
 
 class Network(nn.Module):
-    """The whole network: from images to predictions of each cell."""
+    """The whole network, from images to predictions for each cell."""
 
     def __init__(self, shape: Shape) -> None:
         super().__init__()
@@ -163,10 +163,10 @@ def _doubled(features: Tensor) -> Tensor:
 
 @cache
 def cells(width: int, height: int, device: torch.device = _CPU) -> tuple[Tensor, Tensor]:
-    """Return the positions of the cells of all levels in an image of this size.
+    """Return the positions of the cells of all scales in an image of the given size.
 
     Returns:
-        Their middles in pixels, shape (cells, 2), and the strides of their levels, shape (cells, 1).
+        The centres in pixels, shape (cells, 2), and the strides of their scales, shape (cells, 1).
     """
     middles, strides = [], []
     for stride in STRIDES:

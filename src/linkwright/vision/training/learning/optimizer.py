@@ -10,9 +10,9 @@ from torch import Tensor, nn
 
 _DECAY = 0.05
 _KERNEL_DECAY = 0.02
-_KERNEL_RATE = 10.0  # of the rate of all else
+_KERNEL_RATE = 10.0  # the learning rate of kernels, as a multiple of the rate of all other weights
 _MOMENTUM = 0.95
-_LEAST = 8  # channels in and out of a kernel that is moved so
+_LEAST = 8  # Muon is used for kernels with at least this many input and output channels
 _POLYNOMIAL = 3.4445, -4.7750, 2.0315
 _ROUNDS = 5
 
@@ -20,8 +20,9 @@ _ROUNDS = 5
 class Optimizer:
     """Muon (Jordan and others 2024) for the kernels of convolutions, AdamW for the rest.
 
-    Muon makes each step of a kernel nearly orthogonal: all directions of its inputs and outputs move alike, including
-    those with small gradients. In few steps networks learn much more with it than with AdamW alone.
+    Muon makes each update of a kernel nearly orthogonal: all directions of its inputs and outputs change equally,
+    including those with small gradients. In the same few steps, networks learn much more with Muon than with AdamW
+    alone.
 
     Args:
         network: the network to train.
@@ -47,7 +48,7 @@ class Optimizer:
 
     @torch.no_grad()
     def step(self, rate: float) -> None:
-        """Update all weights by their gradients."""
+        """Update all weights from their gradients, at the given learning rate."""
         for group in self._adamw.param_groups:
             group["lr"] = rate
         self._adamw.step()
@@ -61,11 +62,11 @@ class Optimizer:
             kernel.add_(orthogonal(kernel.grad.lerp(momentum, _MOMENTUM)), alpha=-size)
 
     def state_dict(self) -> dict[str, Any]:
-        """Return the state for a checkpoint."""
+        """Return the state to store in a checkpoint."""
         return {"adamw": self._adamw.state_dict(), "momenta": self._momenta}
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
-        """Restore the state of `state_dict`."""
+        """Restore a state that `state_dict` returned."""
         self._adamw.load_state_dict(state["adamw"])
         for mine, other in zip(self._momenta, state["momenta"], strict=True):
             mine.copy_(other)

@@ -1,7 +1,7 @@
-"""Starting weights: those of a network that `linkwright vision train` exported.
+"""Initial weights from a network that `linkwright vision train` exported.
 
-An exported convolution holds its normalisation, too. Here they become two layers again that compute the same: the
-statistics, which the file lacks, are measured with images.
+The export folds the normalisation into each convolution. This module splits it into two layers again that compute the
+same result. The file lacks the statistics of the normalisation, so they are measured with images.
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_
 from linkwright.vision.detectors.class_names import names_in_metadata
 from linkwright.vision.training.learning.network import Convolution, Network
 
-_SHORTEST = 1e-12  # of a kernel, so that one of zeros can be divided by its length
+_SHORTEST = 1e-12  # the minimum norm of a kernel, which avoids a division by zero
 
 
 def load_weights(network: Network, names: Sequence[str], path: Path, images: Iterable[Tensor]) -> None:
     """Load the weights of an ONNX file into a network.
 
-    Classes are matched by their names. The network's weights of a class that the file lacks stay as they are.
+    Classes are matched by name. Weights for a class that the file lacks are left unchanged.
 
     Args:
         network: the network to change. With the classes of the file it computes the same boxes and logits, up to a
             shift that the export has added. It is in evaluation mode afterwards.
-        names: the names of its classes.
-        path: the path of the file.
-        images: the images to measure the statistics of its layers with, shape (batch, 3, height, width).
+        names: the names of the network's classes.
+        path: the path of the ONNX file.
+        images: the images used to measure layer statistics, shape (batch, 3, height, width).
 
     Raises:
-        LinkwrightError: VISION308, the file cannot be read, or holds another network.
+        LinkwrightError: VISION308, the file cannot be read, or contains a different network.
     """
     known, weights = _read(path)
     layers = _in_order(network.eval())
@@ -60,7 +60,7 @@ def load_weights(network: Network, names: Sequence[str], path: Path, images: Ite
 
 
 def _read(path: Path) -> tuple[tuple[str, ...], list[tuple[Tensor, Tensor]]]:
-    """Read the names of the classes, and kernel and bias of each convolution in the order of the computation."""
+    """Return the class names, and the kernel and bias of each convolution in execution order."""
     try:
         model = onnx.load(path, load_external_data=False)
         stored = {tensor.name: numpy_helper.to_array(tensor) for tensor in model.graph.initializer}
@@ -82,7 +82,7 @@ def _read(path: Path) -> tuple[tuple[str, ...], list[tuple[Tensor, Tensor]]]:
 
 
 def _in_order(network: Network) -> list[nn.Conv2d]:
-    """Return the convolutions in the order of the computation."""
+    """Return the convolutions in execution order."""
     found: list[nn.Conv2d] = []
     layers = [module for module in network.modules() if isinstance(module, nn.Conv2d)]
     hooks = [module.register_forward_hook(lambda layer, _, __: found.append(layer)) for module in layers]
@@ -94,7 +94,7 @@ def _in_order(network: Network) -> list[nn.Conv2d]:
 
 
 def _offset(layer: nn.Conv2d | nn.BatchNorm2d, bias: Tensor) -> None:
-    """Make a layer add `bias`; a normalisation does nothing else."""
+    """Set the bias of a layer; make a normalisation add nothing but this bias."""
     layer.bias.copy_(bias)
     if isinstance(layer, nn.BatchNorm2d):
         layer.weight.fill_(1.0)
@@ -103,9 +103,9 @@ def _offset(layer: nn.Conv2d | nn.BatchNorm2d, bias: Tensor) -> None:
 
 
 def _normalize(network: Network, blocks: Sequence[Convolution], images: Iterable[Tensor]) -> None:
-    """Move statistics and lengths of the kernels into the normalisations, without changing the results.
+    """Move statistics and kernel norms into the normalisations, without changing the results.
 
-    Each output's kernel has the length 1 afterwards, because the optimizer's steps have one length.
+    Afterwards the kernel of each output has norm 1, because the optimizer's steps all have the same length.
     """
     sums = {block.norm: torch.zeros(3, block.norm.num_features, dtype=torch.float64) for block in blocks}
 
