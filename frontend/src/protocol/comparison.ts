@@ -2,14 +2,14 @@
 
 export type Mark = "added" | "removed" | "changed";
 
-/** A robot of the comparison: its RobotModel display, empty if none shows it, its name, and the links to mark. */
+/** A robot of the comparison: its RobotModel display, its name, and the links to highlight. */
 export interface ComparedRobot {
   display: string;
   label: string;
   marks: Record<string, Mark>;
 }
 
-/** A place in a text, 1-based: for readers, and for the Source panel, or without a file. */
+/** A place in a text, 1-based: `path` for readers, and the file for the Source panel. */
 export interface ComparedPlace {
   text: string;
   file: string;
@@ -32,7 +32,7 @@ export interface ComparedItem {
   new_place: ComparedPlace | null;
 }
 
-/** The differences of two descriptions. */
+/** The differences between two descriptions. */
 export interface ComparedDescriptions {
   old: ComparedRobot;
   new: ComparedRobot;

@@ -8,7 +8,7 @@ export type PropertyValue = boolean | number | string | null;
 
 export type RowDetails = "frame" | "link" | "joint" | "effort";
 
-/** The topics offered for a row: those of one of the types, whose names contain one of the words, if any. */
+/** The topics offered for a row. */
 export interface TopicOffer {
   messages: string[];
   words: string[];
@@ -31,14 +31,14 @@ export interface Property {
   topics: TopicOffer | null;
 }
 
-/** A row below a display's Status. Its text is usually a phrase, which each page gets in its language. */
+/** A row below a display's Status. Its text is usually a phrase, which each page receives in its own language. */
 export interface StatusRow {
   name: string;
   level: StatusLevel;
   text: string;
 }
 
-/** A place in a source file, 1-based, with the way there (macro calls and includes, innermost first). */
+/** A place in a source file, 1-based, with the macro calls and includes that lead to it, innermost first. */
 export interface Place {
   file: string;
   line: number;
@@ -60,7 +60,7 @@ export interface Display {
   properties: Property[];
 }
 
-/** The complete Displays tree: sent at the start and when displays are added, removed or moved. */
+/** The complete tree of displays, sent at the start and when displays are added, removed or moved. */
 export interface Tree {
   global_options: Property[];
   global_status: StatusRow[];
@@ -69,7 +69,7 @@ export interface Tree {
   type: "tree";
 }
 
-/** All property rows of one display again (the links of a new robot, the frames of TF). */
+/** All property rows of one display, sent again when they change (the links of a new robot, the frames of TF). */
 export interface DisplayProperties {
   display: string;
   properties: Property[];
@@ -84,7 +84,7 @@ export interface PropertyChanged {
   type: "property_changed";
 }
 
-/** The status rows of one display, or of ``global``. */
+/** The status rows of one display or of ``global``. */
 export interface DisplayStatus {
   display: string;
   level: StatusLevel;
@@ -103,13 +103,13 @@ export type EditKind = "set" | "enable" | "disable" | "add" | "duplicate" | "ren
 
 export type Question = "unsaved" | "exists" | "changed_on_disk";
 
-/** The edit that undo or redo would revert or repeat: its kind, and the name of the property or display. */
+/** An edit that undo would revert or redo would repeat: its kind, and the name of the property or display. */
 export interface EditName {
   kind: EditKind;
   name: string;
 }
 
-/** The configuration that the page sees. */
+/** The configuration that the page shows. */
 export interface Configuration {
   path: string | null;
   opened: number;
@@ -127,21 +127,21 @@ export interface DisplayClass {
   messages: string[];
 }
 
-/** A topic of the graph, its type, and the classes of displays that show it; none when no display does. */
+/** A topic of the graph, its type, and the classes of displays that can show it, possibly none. */
 export interface TopicChoice {
   topic: string;
   message: string;
   classes: string[];
 }
 
-/** Answers `AskDisplayChoices`: all classes of displays that can be added, and the topics of the graph. */
+/** Response to `AskDisplayChoices`: all classes of displays that can be added, and the topics of the graph. */
 export interface DisplayChoices {
   classes: DisplayClass[];
   topics: TopicChoice[];
   type: "display_choices";
 }
 
-/** Answers `AskFolder`: the folders and configuration files in a folder of the server, by name. */
+/** Response to `AskFolder`: the folders and configuration files in a folder of the server, by name. */
 export interface Folder {
   path: string;
   parent: string | null;
@@ -150,20 +150,20 @@ export interface Folder {
   type: "folder";
 }
 
-/** Answers `AskConfigurationText`: the file as it would be saved now, and a name for it. */
+/** Response to `AskConfigurationText`: the text of the file as it would be saved now, and a name for it. */
 export interface ConfigurationText {
   name: string;
   text: string;
   type: "configuration_text";
 }
 
-/** The configuration was saved. */
+/** A notice that the configuration was saved. */
 export interface ConfigurationSaved {
   path: string;
   type: "configuration_saved";
 }
 
-/** A request of a page was refused. With a question, the page may confirm it and repeat the request. */
+/** The rejection of a page's request; with a question, the page may confirm it and repeat the request. */
 export interface ConfigurationRefused {
   message: string;
   question: Question | null;
@@ -171,7 +171,7 @@ export interface ConfigurationRefused {
   type: "configuration_refused";
 }
 
-/** Add a display of a class, enabled; into a group, if one is named, and showing a topic, if one is named. */
+/** Add an enabled display of a class, optionally to a group, and optionally showing a topic. */
 export interface AddDisplay {
   cls: string;
   name: string;
@@ -193,7 +193,7 @@ export interface RenameDisplay {
   type: "rename_display";
 }
 
-/** Remove displays with their content. */
+/** Remove displays with their contents. */
 export interface RemoveDisplays {
   displays: string[];
   type: "remove_displays";
@@ -207,7 +207,7 @@ export interface MoveDisplays {
   type: "move_displays";
 }
 
-/** Put displays into a new group, in the place of the first of them. */
+/** Put displays into a new group at the position of the first of them. */
 export interface GroupDisplays {
   displays: string[];
   name: string;
@@ -219,7 +219,7 @@ export interface Undo {
   type: "undo";
 }
 
-/** Redo the edit that was undone last. */
+/** Redo the edit that was last undone. */
 export interface Redo {
   type: "redo";
 }
@@ -229,26 +229,26 @@ export interface AskDisplayChoices {
   type: "ask_display_choices";
 }
 
-/** Ask for the contents of a folder of the server; None for that of the open file. */
+/** Ask for the contents of a folder of the server; None for the folder of the open file. */
 export interface AskFolder {
   path: string | null;
   type: "ask_folder";
 }
 
-/** Start with RViz's default configuration; `discard` allows losing unsaved edits. */
+/** Open RViz's default configuration; `discard` allows losing unsaved edits. */
 export interface NewConfiguration {
   discard: boolean;
   type: "new_configuration";
 }
 
-/** Open a file of the server; `discard` allows losing unsaved edits. */
+/** Open a file on the server; `discard` allows losing unsaved edits. */
 export interface OpenConfiguration {
   path: string;
   discard: boolean;
   type: "open_configuration";
 }
 
-/** Open a file of the browser's machine: its name and text. */
+/** Open a file from the browser's machine, given its name and text. */
 export interface LoadConfiguration {
   name: string;
   text: string;
@@ -256,19 +256,19 @@ export interface LoadConfiguration {
   type: "load_configuration";
 }
 
-/** Open the file again, without the edits. */
+/** Open the file again and discard the edits. */
 export interface RevertConfiguration {
   type: "revert_configuration";
 }
 
-/** Save to the file, or to another one of the server, which is the configuration's file from then on. */
+/** Save to the current or another file on the server, which becomes the configuration's file. */
 export interface SaveConfiguration {
   path: string | null;
   replace: boolean;
   type: "save_configuration";
 }
 
-/** Ask for the file as it would be saved now, to store it on the browser's machine. */
+/** Ask for the text of the file as it would be saved now, to store it on the browser's machine. */
 export interface AskConfigurationText {
   type: "ask_configuration_text";
 }
@@ -290,7 +290,7 @@ export interface Panels {
   type: "panels";
 }
 
-/** The user opened or closed one of these panels; the file stores the open ones. */
+/** The user opened or closed a panel; the file stores the list of open panels. */
 export interface ShowPanels {
   shown: PanelName[];
   type: "show_panels";

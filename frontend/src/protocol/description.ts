@@ -15,13 +15,13 @@ export interface ArgumentForm {
   type: "argument_form";
 }
 
-/** The user gives values to arguments of the form. */
+/** The user sets values for arguments of the form. */
 export interface GiveArguments {
   values: Record<string, string>;
   type: "give_arguments";
 }
 
-/** A call of a macro, or, without a macro, an include of a file; 1-based. */
+/** A call of a macro or, if the macro is empty, an include of a file; 1-based. */
 export interface CallSite {
   macro: string | null;
   file: string;
@@ -29,7 +29,7 @@ export interface CallSite {
   column: number;
 }
 
-/** Characters of a text, from 1, the end exclusive; `file` is empty for the expanded description. */
+/** A range of characters in a text, 1-based, with exclusive end; `file` is empty for the expanded description. */
 export interface SourceRange {
   file: string;
   line: number;
@@ -38,14 +38,14 @@ export interface SourceRange {
   end_column: number;
 }
 
-/** The place of an element: in the expanded text, and in its file, with the calls between them. */
+/** Where an element is written: in the expanded text, and in its file, with the calls in between. */
 export interface Written {
   expanded: SourceRange | null;
   origin: SourceRange | null;
   calls: CallSite[];
 }
 
-/** Mass in kg and centre of mass in the link's frame, m. */
+/** A link's mass in kg and centre of mass in the link's frame, m. */
 export interface LinkInertia {
   mass: number;
   center: number[];
@@ -53,7 +53,7 @@ export interface LinkInertia {
   quaternion: number[];
 }
 
-/** A link as described; `frame` is its name in tf. */
+/** A link as described; `frame` is the name of its frame in tf. */
 export interface LinkDetails {
   name: string;
   frame: string;
@@ -62,14 +62,14 @@ export interface LinkDetails {
   written: Written;
 }
 
-/** Position = multiplier * position of `joint` + offset. */
+/** The mimic relation of a joint: position = multiplier * position of `joint` + offset. */
 export interface JointMimic {
   joint: string;
   multiplier: number;
   offset: number;
 }
 
-/** A joint as described: the origin in the parent's frame, the unit axis in the joint's frame; SI units. */
+/** A joint as described: its origin in the parent's frame, its unit axis in the joint's frame; SI units. */
 export interface JointDetails {
   name: string;
   kind: "revolute" | "continuous" | "prismatic" | "fixed" | "floating" | "planar";
@@ -93,7 +93,7 @@ export interface JointDetails {
   written: Written;
 }
 
-/** The description of the robot of a RobotModel display; answers `AskDescription`. */
+/** The description of the robot of a RobotModel display; response to `AskDescription`. */
 export interface Description {
   display: string;
   revision: number;
@@ -105,7 +105,7 @@ export interface Description {
   type: "description";
 }
 
-/** A display shows another description now; lists the links and joints that differ. */
+/** A notice that a display shows a new description; lists the links and joints that differ. */
 export interface DescriptionChanged {
   display: string;
   revision: number;
@@ -114,7 +114,7 @@ export interface DescriptionChanged {
   type: "description_changed";
 }
 
-/** A text of a description, or the expanded one if `file` is empty; None for a file that is not part of it. */
+/** The text of a file of a description, or the expanded text if `file` is empty; None for an unrelated file. */
 export interface DescriptionText {
   display: string;
   revision: number;
@@ -123,7 +123,7 @@ export interface DescriptionText {
   type: "description_text";
 }
 
-/** An implausible mass or inertia of a link. */
+/** A finding about an implausible mass or inertia of a link. */
 export interface InertiaFinding {
   link: string;
   code: string;
@@ -131,7 +131,7 @@ export interface InertiaFinding {
   hint: string;
 }
 
-/** All implausible masses of a robot; answers `AskInertia`. */
+/** All implausible masses and inertias of a robot; response to `AskInertia`. */
 export interface InertiaFindings {
   display: string;
   revision: number;
@@ -145,7 +145,7 @@ export interface AskDescription {
   type: "ask_description";
 }
 
-/** The page shows a text of a description; an empty `file` is the expanded one. */
+/** The page shows a text of a description; an empty `file` means the expanded text. */
 export interface AskDescriptionText {
   display: string;
   file: string;
@@ -166,7 +166,7 @@ export interface DiagnosticNote {
   column: number | null;
 }
 
-/** A diagnostic for the page; `excerpt` is the source line, if there is one. */
+/** A diagnostic for the page; `excerpt` is the source line if available. */
 export interface DiagnosticItem {
   code: string;
   severity: "error" | "warning" | "info";
@@ -181,7 +181,7 @@ export interface DiagnosticItem {
   hints: string[];
 }
 
-/** The current findings on the description; an empty list clears them. */
+/** The current findings about the description; an empty list clears them. */
 export interface Diagnostics {
   items: DiagnosticItem[];
   type: "diagnostics";

@@ -4,7 +4,7 @@ import type { DiagnosticItem } from "./description";
 
 export type EditedPart = "joint" | "axis" | "visual" | "collision" | "inertial";
 
-/** A part of a robot with a pose: the origin of a joint, visual, collision or inertial, or the axis of a joint. */
+/** A part of a robot that can be edited. */
 export interface EditablePart {
   part: EditedPart;
   name: string;
@@ -17,7 +17,7 @@ export interface EditablePart {
   line: number;
 }
 
-/** The editable parts of a link of a display, the joint above it first; `why_not` is the reason for none. */
+/** The editable parts of a display's link, the parent joint first; `why_not` is the reason if there are none. */
 export interface EditableParts {
   display: string;
   link: string;
@@ -26,13 +26,13 @@ export interface EditableParts {
   type: "editable_parts";
 }
 
-/** A file that an edit changes: its full name, and the lines that it removes, adds and keeps around them. */
+/** A file that an edit changes: its full name, and the removed, added and unchanged surrounding lines. */
 export interface EditedFile {
   file: string;
   diff: string[];
 }
 
-/** The outcome of an edit, or why it is refused; `also` lists further changes. */
+/** The outcome of an edit, or the reason why it is rejected; `also` lists further changes. */
 export interface EditPreview {
   number: number;
   files: EditedFile[];
@@ -41,14 +41,14 @@ export interface EditPreview {
   type: "edit_preview";
 }
 
-/** The outcome of writing files: `refusal` is the reason if it failed; `files` were written, also by an undo. */
+/** The outcome of writing files; `refusal` is the reason if it failed; `files` were written, also by undo. */
 export interface EditWritten {
   files: string[];
   refusal: DiagnosticItem | null;
   type: "edit_written";
 }
 
-/** Whether an edit can be undone, or redone. */
+/** Whether an edit can be undone or redone. */
 export interface EditHistory {
   can_undo: boolean;
   can_redo: boolean;
@@ -75,7 +75,7 @@ export interface PreviewEdit {
   type: "preview_edit";
 }
 
-/** The user applies the edit of the preview with this number. */
+/** The user applies the previewed edit with this number. */
 export interface ApplyEdit {
   number: number;
   type: "apply_edit";
@@ -86,7 +86,7 @@ export interface UndoEdit {
   type: "undo_edit";
 }
 
-/** Redo the edit that was undone last. */
+/** Redo the edit that was last undone. */
 export interface RedoEdit {
   type: "redo_edit";
 }

@@ -9,7 +9,7 @@ export interface AskExport {
   type: "ask_export";
 }
 
-/** The file can be fetched once, from an address of the server; answers `AskExport`. */
+/** The address of the exported file, which can be fetched once; response to `AskExport`. */
 export interface ExportReady {
   url: string;
   name: string;
@@ -17,7 +17,7 @@ export interface ExportReady {
   type: "export_ready";
 }
 
-/** The file could not be made; answers `AskExport`. */
+/** The reason why an export failed; response to `AskExport`. */
 export interface ExportFailed {
   message: string;
   type: "export_failed";

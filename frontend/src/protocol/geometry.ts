@@ -26,7 +26,7 @@ export interface PolygonLine {
   kind: "polygon_line";
 }
 
-/** GridMap: the middles of cells in the frame of the content, row by row. */
+/** GridMap: the centres of the cells in the frame of the content, row by row. */
 export interface GridSurface {
   rows: number;
   columns: number;
@@ -36,7 +36,7 @@ export interface GridSurface {
   kind: "grid_surface";
 }
 
-/** Range: a cone along x of the frame of the content, metres and radians; no cone if `range` is 0. */
+/** Range: a cone along x in the frame of the content, metres and radians; no cone if `range` is 0. */
 export interface RangeCone {
   range: number;
   field_of_view: number;
@@ -50,7 +50,7 @@ export interface Screw {
   kind: "screw";
 }
 
-/** Effort: a ring about each joint. */
+/** Effort: a ring around each joint. */
 export interface EffortRings {
   joints: string[];
   poses: Float32Array;

@@ -25,7 +25,7 @@ export interface ImageFrame {
   kind: "image_frame";
 }
 
-/** The size of an Image display's panel in pixels, 0 while it is hidden; larger images are not needed. */
+/** The size of an Image display's panel in pixels, 0 while it is hidden; larger images need not be sent. */
 export interface ImageSize {
   display: string;
   width: number;
@@ -33,7 +33,7 @@ export interface ImageSize {
   type: "image_size";
 }
 
-/** Map: the cells row by row from the origin's corner, each the byte of its int8 value. */
+/** Map: the cells row by row from the origin's corner, each as the byte of its int8 value. */
 export interface OccupancyMap {
   width: number;
   height: number;

@@ -15,7 +15,7 @@ export type MarkerKind =
   | "triangle_list"
   | "arrow_strip";
 
-/** The file of a mesh marker: an address, or the bytes that came with the message. */
+/** The file of a mesh marker: an address, or the bytes contained in the message. */
 export interface MarkerMesh {
   format: string;
   url: string | null;
@@ -23,7 +23,7 @@ export interface MarkerMesh {
   embedded: boolean;
 }
 
-/** A marker, as visualization_msgs/msg/Marker has it. */
+/** A marker with the fields of visualization_msgs/msg/Marker. */
 export interface MarkerShape {
   id: string;
   namespace: string;
@@ -40,7 +40,7 @@ export interface MarkerShape {
   texture: string | null;
 }
 
-/** Marker and MarkerArray: new and changed markers, and the ids of removed ones. */
+/** Marker and MarkerArray: new and changed markers, and the IDs of removed markers. */
 export interface MarkersChanged {
   everything: boolean;
   gone: string[];
@@ -76,7 +76,7 @@ export interface InteractiveControl {
   markers: MarkerShape[];
 }
 
-/** An entry of a marker's menu; `parent` is 0 at the top. */
+/** An entry of a marker's menu; `parent` is 0 for a top-level entry. */
 export interface MarkerMenuEntry {
   id: number;
   parent: number;
@@ -94,7 +94,7 @@ export interface InteractiveMarkerShape {
   kind: "interactive_marker";
 }
 
-/** An interactive marker has another pose in the frame of the content. */
+/** The new pose of an interactive marker in the frame of the content. */
 export interface InteractiveMarkerMoved {
   name: string;
   pose: number[];

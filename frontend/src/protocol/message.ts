@@ -2,7 +2,7 @@
 
 export const PROTOCOL_VERSION = 5;
 
-/** First message on every connection; `run` changes when the program is started again. */
+/** The first message on every connection; `run` changes when the program is started again. */
 export interface Hello {
   protocol: number;
   version: string;
@@ -11,13 +11,13 @@ export interface Hello {
   type: "hello";
 }
 
-/** Whether this program's own delays, and not the line, are most of the time that answers of the page take. */
+/** Whether delays of this program, and not of the connection, dominate the page's response time. */
 export interface ProgramIsLate {
   late: boolean;
   type: "program_is_late";
 }
 
-/** Acknowledges the number of messages that the page has received, after the first one and after each large one. */
+/** The number of messages that the page has received, sent after the first and after each large message. */
 export interface Received {
   count: number;
   type: "received";
@@ -25,7 +25,7 @@ export interface Received {
 
 export const TRANSFORMS_KIND = 1;
 
-/** Names and parents (index, -1 for a root) of the frames in the binary frames with this revision. */
+/** The names and parents (index, -1 for a root) of the frames in binary frames with this revision. */
 export interface FrameTable {
   revision: number;
   names: string[];
@@ -35,7 +35,7 @@ export interface FrameTable {
 
 export const DATA_KIND = 2;
 
-/** Remove a display's content: that with a key, or all of it. */
+/** Remove a display's content: the content with a key, or all of it. */
 export interface DisplayForgotten {
   display: string;
   key: string | null;

@@ -6,13 +6,13 @@ export type GoalState = "none" | "active" | "canceling" | "succeeded" | "cancele
 
 export type NavigationCommand = "startup" | "pause" | "resume" | "reset" | "cancel";
 
-/** Whether the page shows its panel. */
+/** Whether the page shows its navigation panel. */
 export interface WatchNavigation {
   open: boolean;
   type: "watch_navigation";
 }
 
-/** The user pressed a button: a command to both lifecycle managers, or to cancel all goals. */
+/** The user pressed a button: a command to both lifecycle managers, or one that cancels all goals. */
 export interface CommandNavigation {
   command: NavigationCommand;
   type: "command_navigation";

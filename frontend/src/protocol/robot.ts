@@ -21,31 +21,31 @@ export interface Joints {
   type: "joints";
 }
 
-/** Positions of the Joints panel's joints, rad or m, including mimicking ones. */
+/** The positions of the Joints panel's joints, rad or m, including mimic joints. */
 export interface JointPositions {
   positions: Record<string, number>;
   type: "joint_positions";
 }
 
-/** The user moved a joint, rad or m. */
+/** The user moved a joint; the position is in rad or m. */
 export interface SetJoint {
   name: string;
   position: number;
   type: "set_joint";
 }
 
-/** A pose was recalled, or a sweep advances: several joints at once, rad or m. */
+/** Positions of several joints, rad or m: a pose was recalled, or a sweep advances. */
 export interface SetJoints {
   positions: Record<string, number>;
   type: "set_joints";
 }
 
-/** The Randomize button. */
+/** The user pressed the Randomize button. */
 export interface RandomizeJoints {
   type: "randomize_joints";
 }
 
-/** The Center button. */
+/** The user pressed the Center button. */
 export interface CenterJoints {
   type: "center_joints";
 }
@@ -62,13 +62,13 @@ export type ShapeKind =
   | "polyline"
   | "heightmap";
 
-/** The part of a mesh file that is drawn, by its name there; `center` moves it to the origin. */
+/** The part of a mesh file to draw, by its name in the file; `center` moves it to the origin. */
 export interface Submesh {
   name: string;
   center: boolean;
 }
 
-/** The material of a shape of a world: roughness and metalness from 0 to 1, and addresses of images. */
+/** The material of a shape in a world: roughness and metalness from 0 to 1, and image addresses. */
 export interface Surface {
   roughness: number;
   metalness: number;
@@ -98,7 +98,7 @@ export interface Shape {
   surface: Surface | null;
 }
 
-/** A link to draw in the frame of its name. */
+/** A link to draw in the frame with its name. */
 export interface LinkScene {
   name: string;
   frame: string;
@@ -109,7 +109,7 @@ export interface LinkScene {
   inertia: LinkInertia | null;
 }
 
-/** A joint, posed in its parent link's frame; `axis` is in the joint's own. SI units. */
+/** A joint, posed in its parent link's frame; `axis` is in the joint's own frame. SI units. */
 export interface JointScene {
   name: string;
   kind: "revolute" | "continuous" | "prismatic" | "fixed" | "floating" | "planar";
@@ -122,7 +122,7 @@ export interface JointScene {
   upper: number | null;
 }
 
-/** The robot of a RobotModel display; `revision` counts descriptions. An empty list of links means no robot. */
+/** The robot of a RobotModel display; `revision` counts its descriptions. An empty list of links means no robot. */
 export interface RobotScene {
   display: string;
   revision: number;
@@ -132,7 +132,7 @@ export interface RobotScene {
   type: "robot_scene";
 }
 
-/** The outcome of loading a mesh in the page; `error` is None if it is drawn. */
+/** The outcome of loading a mesh in the page; `error` is None if the mesh is drawn. */
 export interface MeshStatus {
   display: string;
   link: string;
@@ -141,14 +141,14 @@ export interface MeshStatus {
   type: "mesh_status";
 }
 
-/** The user selected a link of a RobotModel display; ask for its place in the files. */
+/** The user selected a link of a RobotModel display, and the page asks where it is written. */
 export interface AskProvenance {
   display: string;
   link: string;
   type: "ask_provenance";
 }
 
-/** The place of a link with its macro calls and their values, as lines; answers `AskProvenance`. */
+/** Where a link is written, with its macro calls and their values, as lines; response to `AskProvenance`. */
 export interface LinkProvenance {
   display: string;
   link: string;

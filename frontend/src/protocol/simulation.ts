@@ -44,13 +44,13 @@ export interface ModelChoice {
   address: string;
 }
 
-/** The models that may be added, by name. */
+/** The models that can be added, sorted by name. */
 export interface ModelChoices {
   models: ModelChoice[];
   type: "model_choices";
 }
 
-/** The change of a model or light; fields that are None stay. */
+/** A change of a model or light; fields that are None are left unchanged. */
 export interface EntityChange {
   name: string;
   pose: number[] | null;
@@ -60,13 +60,13 @@ export interface EntityChange {
   colour: number[] | null;
 }
 
-/** The user starts or stops editing the world; meanwhile the simulation is paused at its start. */
+/** The user starts or stops editing the world; during editing the simulation is paused at its start. */
 export interface SetModelling {
   active: boolean;
   type: "set_modelling";
 }
 
-/** The user adds an object; `address` is that of a model, an empty `size` means the default one. */
+/** The user adds an object; `address` is the address of a model, and an empty `size` means the default size. */
 export interface AddEntity {
   shape: NewKind;
   address: string;
@@ -81,7 +81,7 @@ export interface ChangeEntities {
   type: "change_entities";
 }
 
-/** The user copies objects; the copies are placed at an offset (x y z) from them. */
+/** The user copies objects; the copies are placed at an offset (x y z) from the originals. */
 export interface CopyEntities {
   names: string[];
   offset: number[];
@@ -94,7 +94,7 @@ export interface DeleteEntities {
   type: "delete_entities";
 }
 
-/** The user makes one model of several, which become its parts. */
+/** The user groups several models into one, and they become its parts. */
 export interface GroupEntities {
   names: string[];
   name: string;
@@ -107,12 +107,12 @@ export interface UngroupEntity {
   type: "ungroup_entity";
 }
 
-/** Undo the last change of the world. */
+/** The user undoes the last change of the world. */
 export interface UndoWorld {
   type: "undo_world";
 }
 
-/** Redo the change that was undone last. */
+/** The user redoes the change that was undone last. */
 export interface RedoWorld {
   type: "redo_world";
 }
@@ -123,7 +123,7 @@ export interface SaveWorld {
   type: "save_world";
 }
 
-/** The user opens the choice of models on the search path. */
+/** The user opens the list of models on the search path. */
 export interface AskModels {
   type: "ask_models";
 }
@@ -138,13 +138,13 @@ export interface SimulationStatus {
   type: "simulation_status";
 }
 
-/** Why the simulation refused the page's request. */
+/** The reason why the simulation refused the page's request. */
 export interface SimulationNotice {
   text: string;
   type: "simulation_notice";
 }
 
-/** The model that the page requested is in the world. */
+/** Confirms that the model that the page requested is in the world. */
 export interface ModelAdded {
   name: string;
   type: "model_added";
@@ -156,7 +156,7 @@ export interface ControlSimulation {
   type: "control_simulation";
 }
 
-/** The user adds a model or robot to the world: a file's path, ``package://`` or ``model://`` address. */
+/** The user adds a model or robot to the world, by a file path or a ``package://`` or ``model://`` address. */
 export interface SpawnModel {
   address: string;
   position: number[];
@@ -169,7 +169,7 @@ export interface DeleteModel {
   type: "delete_model";
 }
 
-/** The user moves a model by an offset, in the world's frame, from its pose when `begins` was true last. */
+/** The user moves a model by an offset in the world frame, from its pose when `begins` was last true. */
 export interface DragModel {
   model: string;
   begins: boolean;
@@ -177,7 +177,7 @@ export interface DragModel {
   type: "drag_model";
 }
 
-/** The user pushes a link (``model::link``) for a moment; `force` is in the world's frame, `point` in the link's. */
+/** The user pushes a link (``model::link``) briefly; `force` is in the world frame, `point` in the link's frame. */
 export interface PushLink {
   link: string;
   point: number[];

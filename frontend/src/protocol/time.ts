@@ -8,7 +8,7 @@ export interface TimelineTopic {
   counts: number[];
 }
 
-/** The recording that is shown: its name, its times and topics. */
+/** The displayed recording: its name, its times and its topics. */
 export interface Timeline {
   name: string;
   start: number;
@@ -18,7 +18,7 @@ export interface Timeline {
   type: "timeline";
 }
 
-/** The stored part of the last minutes: its first and last time, its bytes, and their limit. */
+/** The stored part of the last minutes: its first and last time, its size in bytes, and the maximum size. */
 export interface HistoryExtent {
   start: number;
   end: number;
@@ -27,7 +27,7 @@ export interface HistoryExtent {
   type: "history_extent";
 }
 
-/** The position in a recording. While `playing`, sent a few times a second. */
+/** The position in a recording, which is sent a few times per second while `playing`. */
 export interface Playhead {
   position: number;
   playing: boolean;
@@ -45,20 +45,20 @@ export interface Play {
   type: "play";
 }
 
-/** The user goes to a time of a recording. */
+/** The user jumps to a time of a recording. */
 export interface SeekTime {
   position: number;
   type: "seek_time";
 }
 
-/** The user goes to the next message that is shown, or to the one before; or to that of a single topic. */
+/** The user jumps to the next or previous displayed message, of any topic or of a single one. */
 export interface StepTime {
   forward: boolean;
   topic: string;
   type: "step_time";
 }
 
-/** The user goes back from the last minutes to the present. */
+/** The user returns from the last minutes to the present. */
 export interface GoLive {
   type: "go_live";
 }
@@ -70,7 +70,7 @@ export interface SetPlayback {
   type: "set_playback";
 }
 
-/** A finished recording: its file on the server, bytes, seconds, and its address for pages. */
+/** A finished recording: its file on the server, size in bytes, length in seconds, and its address for pages. */
 export interface RecordedFile {
   name: string;
   path: string;
@@ -80,7 +80,7 @@ export interface RecordedFile {
   simulated: number | null;
 }
 
-/** The state of recording, for all pages; sent each second while there is a recording. */
+/** The state of recording, for all pages; sent every second during a recording. */
 export interface RecordingState {
   possible: boolean;
   path: string;
@@ -92,7 +92,7 @@ export interface RecordingState {
   type: "recording_state";
 }
 
-/** The user records topics; without any, all present and future ones. */
+/** The user records topics; an empty list means all present and future topics. */
 export interface RecordTopics {
   topics: string[];
   type: "record_topics";
@@ -112,7 +112,7 @@ export interface SaveMinutes {
 
 export type SyncMode = "Off" | "Exact" | "Approximate";
 
-/** The state of time, sent when it changes. `sources` are the displays whose messages can drive it. */
+/** The state of the Time panel, sent on changes. `sources` are the displays whose messages can drive time. */
 export interface TimeState {
   paused: boolean;
   mode: SyncMode;
@@ -121,7 +121,7 @@ export interface TimeState {
   type: "time_state";
 }
 
-/** The clocks now, in seconds, for pages that watch them. */
+/** The current clocks in seconds, for pages that watch them. */
 export interface Clock {
   ros: number;
   ros_start: number;
@@ -131,12 +131,12 @@ export interface Clock {
   type: "clock";
 }
 
-/** Time was reset: displays dropped their messages. */
+/** Reports that time was reset and displays dropped their messages. */
 export interface TimeReset {
   type: "time_reset";
 }
 
-/** The user pauses or resumes, or synchronizes time with a display's messages. */
+/** The user pauses or resumes time, or synchronizes it with a display's messages. */
 export interface SetTime {
   paused: boolean;
   mode: SyncMode;
@@ -144,7 +144,7 @@ export interface SetTime {
   type: "set_time";
 }
 
-/** The Reset button: displays are cleared, and elapsed times begin at zero. */
+/** The user presses the Reset button: displays are cleared, and elapsed times restart at zero. */
 export interface ResetTime {
   type: "reset_time";
 }

@@ -2,27 +2,27 @@
 
 import type { Property, PropertyValue } from "./configuration";
 
-/** A view: RViz's class of it (``rviz_default_plugins/Orbit``), its name, and its values. */
+/** A view: its RViz class (``rviz_default_plugins/Orbit``), its name, and its values. */
 export interface View {
   cls: string;
   name: string;
   values: Record<string, PropertyValue>;
 }
 
-/** A class of views: its rows, whose ids are names of values, and RViz's defaults, also of rows not shown. */
+/** A type of view: its rows, whose IDs are names of values, and RViz's defaults, including rows not shown. */
 export interface ViewClass {
   cls: string;
   properties: Property[];
   defaults: Record<string, PropertyValue>;
 }
 
-/** All classes of views; sent before the first view. */
+/** All types of views; sent before the first view. */
 export interface ViewClasses {
   classes: ViewClass[];
   type: "view_classes";
 }
 
-/** The view of a configuration; the page owns the camera from then on. */
+/** The view of a configuration; from then on the page controls the camera. */
 export interface ViewState {
   view: View;
   revision: number;
@@ -30,25 +30,25 @@ export interface ViewState {
   type: "view_state";
 }
 
-/** A saved view and its id, which stays the same when the view is renamed or changed. */
+/** A saved view and its ID, which does not change when the view is renamed or edited. */
 export interface SavedView {
   id: string;
   view: View;
 }
 
-/** The saved views, in their order, sent after each change. */
+/** The saved views in order, sent after each change. */
 export interface SavedViews {
   views: SavedView[];
   type: "saved_views";
 }
 
-/** The page's current camera, sent at most a few times a second; the last one of any page is saved in the file. */
+/** The page's current camera, sent at most a few times per second; the last one of any page is saved in the file. */
 export interface ViewChanged {
   view: View;
   type: "view_changed";
 }
 
-/** The extent of robots with their meshes, measured by a page whose camera the user has not moved. */
+/** The size of the robots with their meshes, measured by a page whose camera the user has not moved. */
 export interface RobotMeasured {
   diagonal: number;
   ground: number;
@@ -74,7 +74,7 @@ export interface RemoveSavedView {
   type: "remove_saved_view";
 }
 
-/** A tool of the toolbar. `supported` is false for an unknown class, which the file keeps. */
+/** A tool of the toolbar. `supported` is false for an unknown class, which is preserved in the file. */
 export interface Tool {
   id: string;
   cls: string;
@@ -83,7 +83,7 @@ export interface Tool {
   properties: Property[];
 }
 
-/** A class of tools that can be added. */
+/** A type of tool that can be added. */
 export interface ToolClass {
   cls: string;
   name: string;
@@ -96,7 +96,7 @@ export interface Tools {
   type: "tools";
 }
 
-/** A new setting of a tool, set by any page; the answer to a refused value is the present one. */
+/** A tool's new setting, set by any page; after a refused value, it contains the current setting. */
 export interface ToolPropertyChanged {
   id: string;
   value: PropertyValue;
@@ -122,7 +122,7 @@ export interface RemoveTool {
   type: "remove_tool";
 }
 
-/** A 2D Pose Estimate or 2D Goal Pose was set in the Fixed Frame: metres, and radians about z. */
+/** The user set a 2D Pose Estimate or 2D Goal Pose in the Fixed Frame: metres, and radians about z. */
 export interface PoseChosen {
   tool: string;
   x: number;
@@ -131,7 +131,7 @@ export interface PoseChosen {
   type: "pose_chosen";
 }
 
-/** A Publish Point tool was used on a point of the Fixed Frame, metres. */
+/** The user selected a point with a Publish Point tool, in the Fixed Frame, metres. */
 export interface PointChosen {
   tool: string;
   x: number;

@@ -15,7 +15,7 @@ export interface LightScene {
   cone: number[];
 }
 
-/** The directions of rays in one plane: `count` of them, from `first` on by `step`, in rad. */
+/** The directions of rays in one plane: `count` angles, starting at `first`, in steps of `step`, in rad. */
 export interface RayAngles {
   first: number;
   step: number;
@@ -35,7 +35,7 @@ export interface LidarScene {
   farthest: number;
 }
 
-/** A camera of a world; as `LidarScene`, and it looks along x with z up. */
+/** A camera of a world; fields are as in `LidarScene`, and it looks along x with z up. */
 export interface CameraScene {
   name: string;
   link: string;
@@ -50,7 +50,7 @@ export interface CameraScene {
   far: number;
 }
 
-/** Fog of a world: its colour, red, green, blue; from `start` to `end` in m, or with `density` in 1/m. */
+/** The fog of a world: its colour (red, green, blue) and its range. */
 export interface FogScene {
   color: number[];
   start: number;
@@ -58,7 +58,7 @@ export interface FogScene {
   density: number | null;
 }
 
-/** World: the content to draw; `revision` counts descriptions. */
+/** The content of a World display to draw; `revision` counts descriptions. */
 export interface WorldScene {
   revision: number;
   name: string;
@@ -76,14 +76,14 @@ export interface WorldScene {
   kind: "world_scene";
 }
 
-/** World: the poses of the links in the frame of the content, shape (N, 7): x y z qx qy qz qw, in the scene's order. */
+/** The poses of the links of a World display, in the order of the scene. */
 export interface WorldPoses {
   revision: number;
   poses: Float32Array;
   kind: "world_poses";
 }
 
-/** World: the lengths of the rays of the lidar with this name, m, shape (vertical * horizontal,). */
+/** The lengths of the rays of a World display's lidar with this name, m, shape (vertical * horizontal,). */
 export interface WorldRays {
   lidar: string;
   ranges: Float32Array;

@@ -13,10 +13,10 @@ _Path = tuple[str, ...]
 
 
 def meanings(name: str) -> list[Phrase]:
-    """Return the meanings of a name or path, each in Markdown; none if URDF has no such thing.
+    """Return the meanings of a name or path as Markdown; empty if URDF has no such element or attribute.
 
-    A path goes from the outside in, may begin anywhere and may end with an attribute: ``joint.limit.effort``
-    and ``limit.effort`` are the same, and so are ``limit/effort`` and ``<limit> effort``.
+    A path is written from outer to inner elements, may start at any element, and may end with an attribute:
+    ``joint.limit.effort`` and ``limit.effort`` are the same, and so are ``limit/effort`` and ``<limit> effort``.
     """
     asked = tuple(re.findall(r"[\w-]+", name.casefold()))
     if not asked:
@@ -35,7 +35,7 @@ def meanings(name: str) -> list[Phrase]:
 
 
 def names() -> list[str]:
-    """Return the names of all elements and attributes, each once."""
+    """Return the names of all elements and attributes, without duplicates."""
     found = [
         name
         for path, rule in _elements(ROBOT, ())
@@ -56,5 +56,5 @@ def _ends_with(path: _Path, asked: _Path) -> bool:
 
 
 def _headed(paths: list[_Path]) -> str:
-    """Return a heading with the paths from within ``<robot>``."""
+    """Return a heading that lists the paths relative to ``<robot>``."""
     return "# " + ", ".join(f"`{'.'.join(path[1:] or path)}`" for path in paths)

@@ -1,4 +1,4 @@
-"""Writing a robot as URDF, in the order of the robot, so that reading it back gives an equal robot."""
+"""Write a robot as URDF, in the robot's order, so that reading it back gives an equal robot."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from linkwright.xmltree.writer import tidied
 def save(robot: Robot) -> str:
     """Return the robot as URDF text; defaults are omitted, numbers are as short as possible without loss.
 
-    Materials are at robot level. Other elements (``gazebo``, ``ros2_control``, ...) follow at the end, unchanged.
+    Materials are written at the robot level. Other elements (``gazebo``, ``ros2_control``, ...) follow at the end,
+    unchanged.
     """
     root = write_element(ROBOT, robot)
     root.children += map(tidied, robot.extensions)
     if robot.element is not None:
-        # The extensions may use prefixes that the file declared on its root.
+        # Extension elements may use prefixes that the original file declared on its root.
         root.attributes |= {name: value for name, value in robot.element.attributes.items() if name.startswith("xmlns")}
     return write(Document(root))
