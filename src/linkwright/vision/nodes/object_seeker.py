@@ -1,7 +1,8 @@
 """object_seeker: finds an object by its name, drives to it or follows it, and describes visible objects.
 
 ``vision/go_to`` and ``vision/follow`` take a name, optionally with a colour (``red ball``, 红色的球).
-``vision/stop`` ends the search, and the outcome is published on ``/voice/response``. ``vision/describe`` lists the visible objects.
+``vision/stop`` ends the search, and the outcome is published on ``/voice/response``.
+``vision/describe`` lists the visible objects.
 ``vision/go_to``, ``vision/follow`` and ``vision/describe`` have variants ``en`` and ``zh`` (``vision/go_to/zh``) for
 the language of the answer.
 """
