@@ -1,0 +1,39 @@
+import { commands, env, ProgressLocation, Uri, window, workspace } from "vscode";
+import type { Views } from "../page/views.js";
+import type { Server } from "./server.js";
+
+/** The command of VS Code's integrated browser (1.109 and newer), which is not documented as an interface. */
+const INTEGRATED_BROWSER = "workbench.action.browser.open";
+
+/** Show the robot of a file, by default that of the active editor. */
+export async function showRobot(server: Server, views: Views, chosen: Uri | undefined): Promise<void> {
+  const uri = chosen ?? window.activeTextEditor?.document.uri;
+  if (uri?.scheme !== "file") return;
+  const candidate = await server.start();
+  if (candidate === undefined) return; // the user has been told
+  const cwd = workspace.getWorkspaceFolder(uri)?.uri.fsPath;
+  const progress = { location: ProgressLocation.Window, title: "Linkwright: loading the robot" };
+  try {
+    await open(await window.withProgress(progress, () => views.address(candidate.command, uri.fsPath, cwd)));
+  } catch (error) {
+    const reason = error instanceof Error ? error.message : String(error);
+    const answer = await window.showErrorMessage(`The robot cannot be shown: ${reason}.`, "Show the Output");
+    if (answer !== undefined) await commands.executeCommand("linkwright.showOutput");
+  }
+}
+
+/**
+ * Open the page beside the text, else in the user's browser.
+ *
+ * Neither VS Code's Simple Browser nor a webview can show it: both put pages into frames, which Linkwright's page
+ * refuses (`frame-ancestors 'none'`).
+ */
+async function open(address: string): Promise<void> {
+  const url = await env.asExternalUri(Uri.parse(address, true)); // forwards the port of a remote machine
+  const known = await commands.getCommands(true);
+  if (known.includes(INTEGRATED_BROWSER)) {
+    await commands.executeCommand(INTEGRATED_BROWSER, url.toString(true)); // true: `=` of ?token= stays
+  } else {
+    await env.openExternal(url);
+  }
+}
