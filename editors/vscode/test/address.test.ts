@@ -1,9 +1,14 @@
 import { expect, test } from "vitest";
-import { AddressReader } from "../src/page/address.js";
+import { addressIn, withoutToken } from "../src/page/address.js";
 
-test("an address that comes in pieces is read when its line is complete", () => {
-  const reader = new AddressReader();
-  expect(reader.read("Viewer: http://127.0.0.1:7448/?tok")).toBeUndefined();
-  expect(reader.read("en=abc")).toBeUndefined();
-  expect(reader.read("\nmore\n")).toBe("http://127.0.0.1:7448/?token=abc");
+test("the address is read from its line", () => {
+  expect(addressIn("Viewer: http://127.0.0.1:7448/?token=a_-b")).toBe("http://127.0.0.1:7448/?token=a_-b");
+});
+
+test("other lines have none", () => {
+  expect(addressIn("[INFO] [viewer-3]: started in the launcher's process")).toBeUndefined();
+});
+
+test("the output does not get the token", () => {
+  expect(withoutToken("Viewer: http://127.0.0.1:7448/?token=a_-b")).toBe("Viewer: http://127.0.0.1:7448/?token=...");
 });

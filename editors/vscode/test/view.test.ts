@@ -42,7 +42,7 @@ describe.skipIf(PYTHON === undefined)("the real program", () => {
 
   test("ends with a file that is not there, and its output says why", async () => {
     let printed = "";
-    const view = new View(command, join(folder, "none.urdf"), folder, (text) => (printed += text));
+    const view = new View(command, join(folder, "none.urdf"), folder, (line) => (printed += line));
     await expect(view.address).rejects.toThrow("ended with status 1");
     expect(printed).toContain("no such file");
   });

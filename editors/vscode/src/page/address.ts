@@ -1,12 +1,11 @@
-const ADDRESS = /https?:\/\/\S+(?=\s)/;
+const ADDRESS = /https?:\/\/\S+/;
 
-/** Finds the page's address in the output of `linkwright view`, which comes in pieces. */
-export class AddressReader {
-  private text = "";
+/** Return the page's address in a line that `linkwright view` prints; undefined if there is none. */
+export function addressIn(line: string): string | undefined {
+  return ADDRESS.exec(line)?.[0];
+}
 
-  /** Add a piece; return the address once it is complete. */
-  read(piece: string): string | undefined {
-    this.text += piece;
-    return ADDRESS.exec(this.text)?.[0];
-  }
+/** Return a line without the token of the address: VS Code writes its output to files. */
+export function withoutToken(line: string): string {
+  return line.replace(/([?&]token=)[\w-]+/, "$1...");
 }

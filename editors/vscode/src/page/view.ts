@@ -1,7 +1,8 @@
 import { type ChildProcess, spawn } from "node:child_process";
 import { dirname } from "node:path";
+import { createInterface } from "node:readline";
 import { type Command, environment, extended, shown } from "../server/command.js";
-import { AddressReader } from "./address.js";
+import { addressIn, withoutToken } from "./address.js";
 
 /** A running `linkwright view` of one file. */
 export class View {
@@ -13,9 +14,9 @@ export class View {
 
   /**
    * @param cwd the working directory, where packages are searched too; by default the folder of the file.
-   * @param log takes the output of the program.
+   * @param log takes the lines that the program prints.
    */
-  constructor(command: Command, file: string, cwd: string | undefined, log: (text: string) => void) {
+  constructor(command: Command, file: string, cwd: string | undefined, log: (line: string) => void) {
     const view = extended(command, "view", "--no-open", file);
     log(shown(view));
     const child = spawn(view.program, view.args, {
@@ -29,17 +30,16 @@ export class View {
       child.on("error", () => resolve());
     });
     this.address = new Promise((resolve, reject) => {
-      const reader = new AddressReader();
-      child.stdout.setEncoding("utf8").on("data", (piece: string) => {
-        log(piece);
-        const address = reader.read(piece);
+      createInterface({ input: child.stdout }).on("line", (line) => {
+        log(withoutToken(line));
+        const address = addressIn(line);
         if (address !== undefined) resolve(address);
       });
-      child.stderr.setEncoding("utf8").on("data", log);
       child.on("error", reject);
       child.on("close", (status) => reject(new Error(`linkwright view ended with status ${status ?? "unknown"}`)));
     });
-    this.address.catch(() => undefined); // whoever asks for the address gets the error
+    createInterface({ input: child.stderr }).on("line", log);
+    this.address.catch(() => undefined); // who asks for the address handles the error
   }
 
   /** End the program; the page then says that it is gone. */

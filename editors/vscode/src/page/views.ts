@@ -5,7 +5,7 @@ import { View } from "./view.js";
 export class Views {
   private readonly running = new Map<string, View>();
 
-  constructor(private readonly log: (text: string) => void) {}
+  constructor(private readonly log: (line: string) => void) {}
 
   /** Return the address of a file's page; starts `linkwright view` unless it runs. */
   address(command: Command, file: string, cwd: string | undefined): Promise<string> {

@@ -13,7 +13,7 @@ let server: Server | undefined;
 export function activate(context: ExtensionContext): void {
   const output = window.createOutputChannel("Linkwright", { log: true });
   const watcher = workspace.createFileSystemWatcher(WATCHED);
-  const views = new Views((text) => output.info(text.trimEnd()));
+  const views = new Views((line) => output.info(line));
   const running = new Server({ output, watcher }, (search) => {
     void offerInstallation(search, () => void running.restart());
   });

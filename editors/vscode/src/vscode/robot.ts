@@ -29,10 +29,11 @@ export async function showRobot(server: Server, views: Views, chosen: Uri | unde
  * refuses (`frame-ancestors 'none'`).
  */
 async function open(address: string): Promise<void> {
-  const url = await env.asExternalUri(Uri.parse(address, true)); // forwards the port of a remote machine
+  const url = Uri.parse(address, true);
   const known = await commands.getCommands(true);
   if (known.includes(INTEGRATED_BROWSER)) {
-    await commands.executeCommand(INTEGRATED_BROWSER, url.toString(true)); // true: `=` of ?token= stays
+    const here = await env.asExternalUri(url); // forwards the port of a remote machine, as openExternal does itself
+    await commands.executeCommand(INTEGRATED_BROWSER, here.toString(true)); // true: the = of ?token= stays
   } else {
     await env.openExternal(url);
   }

@@ -51,7 +51,7 @@ export class Server {
 
   private async search(notFound: (search: Search) => void): Promise<Candidate | undefined> {
     const search = await findServer(places(), (command) => probe(command, folders()[0]));
-    for (const { candidate, reason } of search.failures) this.shared.output.warn(lineOf(candidate), reason);
+    for (const { candidate, reason } of search.failures) this.shared.output.warn(`${lineOf(candidate)}: ${reason}`);
     if (search.found === undefined) notFound(search);
     return search.found;
   }
@@ -64,7 +64,7 @@ export class Server {
     try {
       await this.client.start();
     } catch (error) {
-      this.shared.output.error(lineOf(found), String(error)); // the client has shown it, too
+      this.shared.output.error(`${lineOf(found)}: ${String(error)}`); // the client has shown it, too
     }
   }
 
