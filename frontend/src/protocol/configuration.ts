@@ -31,14 +31,14 @@ export interface Property {
   topics: TopicOffer | null;
 }
 
-/** A row below a display's Status. Its text is usually a phrase, which each page receives in its own language. */
+/** A row below a display's Status. */
 export interface StatusRow {
   name: string;
   level: StatusLevel;
   text: string;
 }
 
-/** A place in a source file, 1-based, with the macro calls and includes that lead to it, innermost first. */
+/** A 1-based place in a source file, with the macro calls and includes that lead to it. */
 export interface Place {
   file: string;
   line: number;
@@ -69,14 +69,14 @@ export interface Tree {
   type: "tree";
 }
 
-/** All property rows of one display, sent again when they change (the links of a new robot, the frames of TF). */
+/** All property rows of one display, sent again when they change. */
 export interface DisplayProperties {
   display: string;
   properties: Property[];
   type: "display_properties";
 }
 
-/** A new value, set by any page or by the server. Enable boxes are the property ``<display>/Enabled``. */
+/** A new value, set by any page or by the server. */
 export interface PropertyChanged {
   id: string;
   value: PropertyValue;
@@ -103,7 +103,7 @@ export type EditKind = "set" | "enable" | "disable" | "add" | "duplicate" | "ren
 
 export type Question = "unsaved" | "exists" | "changed_on_disk";
 
-/** An edit that undo would revert or redo would repeat: its kind, and the name of the property or display. */
+/** An edit to undo or redo: its kind, and the name of the property or display. */
 export interface EditName {
   kind: EditKind;
   name: string;
@@ -134,14 +134,14 @@ export interface TopicChoice {
   classes: string[];
 }
 
-/** Response to `AskDisplayChoices`: all classes of displays that can be added, and the topics of the graph. */
+/** The display classes that can be added, and the topics; response to `AskDisplayChoices`. */
 export interface DisplayChoices {
   classes: DisplayClass[];
   topics: TopicChoice[];
   type: "display_choices";
 }
 
-/** Response to `AskFolder`: the folders and configuration files in a folder of the server, by name. */
+/** The folders and configuration files in a server folder, by name; response to `AskFolder`. */
 export interface Folder {
   path: string;
   parent: string | null;
@@ -150,7 +150,7 @@ export interface Folder {
   type: "folder";
 }
 
-/** Response to `AskConfigurationText`: the text of the file as it would be saved now, and a name for it. */
+/** The file's text as it would be saved, and a name; response to `AskConfigurationText`. */
 export interface ConfigurationText {
   name: string;
   text: string;
@@ -163,7 +163,7 @@ export interface ConfigurationSaved {
   type: "configuration_saved";
 }
 
-/** The rejection of a page's request; with a question, the page may confirm it and repeat the request. */
+/** The rejection of a page's request. */
 export interface ConfigurationRefused {
   message: string;
   question: Question | null;
@@ -199,7 +199,7 @@ export interface RemoveDisplays {
   type: "remove_displays";
 }
 
-/** Move displays into a group (None for the top level), before one of its displays (None for the end). */
+/** Move displays into a group, before one of its displays. */
 export interface MoveDisplays {
   displays: string[];
   group: string | null;

@@ -6,7 +6,7 @@ export interface ArgumentChoice {
   values: Record<string, string>;
 }
 
-/** The arguments that a file needs, in order, and their initial values; without a file there is no form. */
+/** The arguments that a file needs, in order, and their initial values. */
 export interface ArgumentForm {
   file: string;
   names: string[];
@@ -29,7 +29,7 @@ export interface CallSite {
   column: number;
 }
 
-/** A range of characters in a text, 1-based, with exclusive end; `file` is empty for the expanded description. */
+/** A range of characters in a text, 1-based, with an exclusive end. */
 export interface SourceRange {
   file: string;
   line: number;
@@ -69,7 +69,7 @@ export interface JointMimic {
   offset: number;
 }
 
-/** A joint as described: its origin in the parent's frame, its unit axis in the joint's frame; SI units. */
+/** A joint as described; SI units. */
 export interface JointDetails {
   name: string;
   kind: "revolute" | "continuous" | "prismatic" | "fixed" | "floating" | "planar";
@@ -114,7 +114,7 @@ export interface DescriptionChanged {
   type: "description_changed";
 }
 
-/** The text of a file of a description, or the expanded text if `file` is empty; None for an unrelated file. */
+/** The text of a file of a description, or the expanded text if `file` is empty. */
 export interface DescriptionText {
   display: string;
   revision: number;

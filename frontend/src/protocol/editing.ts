@@ -17,7 +17,7 @@ export interface EditablePart {
   line: number;
 }
 
-/** The editable parts of a display's link, the parent joint first; `why_not` is the reason if there are none. */
+/** The editable parts of a display's link, the parent joint first. */
 export interface EditableParts {
   display: string;
   link: string;
@@ -26,7 +26,7 @@ export interface EditableParts {
   type: "editable_parts";
 }
 
-/** A file that an edit changes: its full name, and the removed, added and unchanged surrounding lines. */
+/** A file that an edit changes: its name, and removed, added and surrounding lines. */
 export interface EditedFile {
   file: string;
   diff: string[];
@@ -41,7 +41,7 @@ export interface EditPreview {
   type: "edit_preview";
 }
 
-/** The outcome of writing files; `refusal` is the reason if it failed; `files` were written, also by undo. */
+/** The outcome of writing files for an edit or an undo. */
 export interface EditWritten {
   files: string[];
   refusal: DiagnosticItem | null;

@@ -25,7 +25,7 @@ export interface ImageFrame {
   kind: "image_frame";
 }
 
-/** The size of an Image display's panel in pixels, 0 while it is hidden; larger images need not be sent. */
+/** The size of an Image display's panel in pixels, 0 while it is hidden. */
 export interface ImageSize {
   display: string;
   width: number;

@@ -17,7 +17,7 @@ export interface ProgramIsLate {
   type: "program_is_late";
 }
 
-/** The number of messages that the page has received, sent after the first and after each large message. */
+/** The number of messages that the page has received. */
 export interface Received {
   count: number;
   type: "received";

@@ -16,7 +16,7 @@ export interface TopicTraffic {
   error: string | null;
 }
 
-/** A field of a message with its value as text; `omitted` is the number of omitted elements or fields. */
+/** A field of a message with its value as text. */
 export interface MessageField {
   name: string;
   kind: string;
@@ -55,7 +55,7 @@ export interface WatchTopics {
 
 export const SAMPLES_KIND = 3;
 
-/** A field that can be plotted, in the notation that follows the topic's name; `kind` is the type of its values. */
+/** A field that can be plotted, in the notation that follows the topic's name. */
 export interface PlotField {
   path: string;
   kind: string;
@@ -68,13 +68,13 @@ export interface PlotSeries {
   path: string;
 }
 
-/** The reason why a series has no values; None if it has values or is waiting for the first message. */
+/** The reason why a series has no values. */
 export interface SeriesState {
   id: number;
   error: string | null;
 }
 
-/** The fields of a topic that can be plotted; response to `AskFields`, sent again once array lengths are known. */
+/** The fields of a topic that can be plotted; response to `AskFields`. */
 export interface TopicFields {
   topic: string;
   kind: string;
@@ -135,7 +135,7 @@ export type ParameterKind =
   | "double_array"
   | "string_array";
 
-/** A parameter. `minimum`, `maximum` and `step` describe its range, as text; empty if there is no range. */
+/** A parameter of a node. */
 export interface ParameterRow {
   name: string;
   kind: ParameterKind;
@@ -202,7 +202,7 @@ export interface DumpParameters {
   type: "dump_parameters";
 }
 
-/** A log record. `level` is as in rcl_interfaces/msg/Log: 10 debug, 20 info, 30 warning, 40 error, 50 fatal. */
+/** A log record. */
 export interface LogLine {
   level: number;
   node: string;
@@ -213,7 +213,7 @@ export interface LogLine {
   line: number;
 }
 
-/** New log records in the order of arrival; `missed` is the number of records that could not be sent. */
+/** New log records in the order of arrival. */
 export interface LogLines {
   lines: LogLine[];
   missed: number;
@@ -228,14 +228,14 @@ export interface WatchLog {
 
 export type TwistKind = "auto" | "Twist" | "TwistStamped";
 
-/** The topic and type of a teleop pad; `auto` selects the type of the topic's subscribers, by default Twist. */
+/** The topic and type of a teleop pad. */
 export interface TeleopTarget {
   topic: string;
   kind: TwistKind;
   frame_id: string;
 }
 
-/** The state of a teleop pad: its type, the number of subscribers, and the reason if it does not publish. */
+/** The state of a teleop pad: type, number of subscribers, and why it does not publish. */
 export interface TeleopState {
   topic: string;
   kind: string;

@@ -10,7 +10,7 @@ export interface CloudPoints {
   kind: "cloud_points";
 }
 
-/** GridCells: cell centres in the frame of the message, metres, shape (N, 3), and the side lengths of a cell. */
+/** GridCells: cell centres, shape (N, 3), and cell side lengths, metres, in the message's frame. */
 export interface CellGrid {
   positions: Float32Array;
   width: number;

@@ -122,7 +122,7 @@ export interface JointScene {
   upper: number | null;
 }
 
-/** The robot of a RobotModel display; `revision` counts its descriptions. An empty list of links means no robot. */
+/** The robot of a RobotModel display; `revision` counts its descriptions. */
 export interface RobotScene {
   display: string;
   revision: number;
@@ -148,7 +148,7 @@ export interface AskProvenance {
   type: "ask_provenance";
 }
 
-/** Where a link is written, with its macro calls and their values, as lines; response to `AskProvenance`. */
+/** Where a link is written, as lines with macro calls; response to `AskProvenance`. */
 export interface LinkProvenance {
   display: string;
   link: string;

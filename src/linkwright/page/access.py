@@ -1,4 +1,4 @@
-"""Access to the server: only with the token, under a host name of this machine, and from the server's own pages.
+"""Access control for the server: the token, the host name and the origin of requests.
 
 The token is in the address that the program prints. The page keeps it in the browser's storage, which belongs to this
 host and port alone, and sends it when it opens its WebSocket. There is no cookie, because browsers send cookies to any
@@ -78,14 +78,20 @@ def keep_token(port: int) -> PortToken:
 
 
 def leave_token(port: int, token: str, *, pages_wait: bool) -> None:
-    """Store, when a program ends, whether its pages wait for the next one, unless the file has another token."""
+    """Store whether the pages of an ending program wait for the next one.
+
+    Nothing is stored if the file has another token.
+    """
     made, stored = _read(token_folder() / str(port))
     if stored is not None and stored.token == token:
         _write(port, made, PortToken(token, pages_wait))
 
 
 def _read(path: Path) -> tuple[float, PortToken | None]:
-    """Return a token's creation time, seconds since the epoch, and the token; None unless the file is private."""
+    """Return a token's creation time and the token; the token is None unless its file is private.
+
+    The time is in seconds since the epoch.
+    """
     with suppress(OSError, ValueError, TypeError, KeyError, RecursionError):
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
         with open(descriptor, "rb") as file:  # noqa: PTH123 - a descriptor, not a path
@@ -149,14 +155,16 @@ class Gate:
         return given is not None and hmac.compare_digest(given.encode(errors="replace"), self.token.encode())
 
     def proof(self, nonce: str) -> str | None:
-        """Return the HMAC-SHA256 of a page's nonce (32 hexadecimal digits), which requires the token to compute.
+        """Return the HMAC-SHA256 of a page's nonce, which requires the token to compute.
+
+        The nonce has 32 hexadecimal digits.
 
         Return None for an invalid nonce. The result reveals nothing about the token.
         """
         return hmac.digest(self.token.encode(), nonce.encode(), "sha256").hex() if _NONCE.fullmatch(nonce) else None
 
     def knows(self, host_header: str) -> bool:
-        """Return whether a Host header names this machine: an IP address, localhost, or the machine's own name."""
+        """Return whether a Host header names this machine: an IP address, localhost, or its own name."""
         if not _PLAIN_HOST.fullmatch(host_header):
             return False
         try:
@@ -270,7 +278,10 @@ _PASSED_ON = ("data_received", "eof_received", "pause_writing", "resume_writing"
 
 
 class Entrance(asyncio.Protocol):
-    """Counts and limits a connection when it opens and closes; data goes directly to the inner protocol."""
+    """Counts and limits a connection when it opens and closes.
+
+    Its data goes directly to the inner protocol.
+    """
 
     def __init__(self, admission: Admission, served: asyncio.Protocol) -> None:
         self.served = served

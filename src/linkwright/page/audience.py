@@ -82,7 +82,7 @@ _QUIET = 0.3
 
 
 def language_asked(request: Request) -> str:
-    """Return the language that a page requests in its address, one of `LANGUAGES`; by default the terminal's."""
+    """Return the language that a page requests, one of `LANGUAGES`; by default the terminal's."""
     return language_of(request.query.get("language", "")) or language_of_terminal()
 
 

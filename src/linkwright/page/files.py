@@ -1,4 +1,4 @@
-"""The files that pages may fetch: meshes named by descriptions, files next to them, and generated files.
+"""The files that pages may fetch: meshes, files next to them, and generated files.
 
 Neither a description nor a request can be trusted. A page is served only meshes and images, only from folders that the
 current descriptions name, and only if the real path, with links followed, is still inside. A file generated for a page
@@ -57,7 +57,7 @@ _LOOSE_DEPTH = 2
 
 @dataclass(frozen=True, slots=True)
 class ServedFolder:
-    """A folder that pages may read from: the folder of a package, of a Gazebo model, or of a mesh outside of both.
+    """A folder that pages may read from: of a package, a Gazebo model, or a mesh outside of both.
 
     Attributes:
         root: the folder.
@@ -71,7 +71,7 @@ class ServedFolder:
 
     @property
     def key(self) -> str:
-        """The key of the folder in addresses: readable, without the path above the folder, and hard to guess.
+        """The key of the folder in addresses: readable, hard to guess, and without the parent path.
 
         The image elements of textures cannot send a token, so the address itself, which only pages receive, must be
         secret.

@@ -16,7 +16,7 @@ from typing import Any
 
 
 def _enter_package() -> None:
-    """Add an empty aiohttp package to the loaded modules, with a hook that runs its ``__init__`` on demand."""
+    """Add an empty aiohttp package to the loaded modules, whose ``__init__`` runs on demand."""
     spec = find_spec("aiohttp")
     if spec is None or spec.loader is None or spec.origin is None:
         return  # the import below raises the error
@@ -59,7 +59,10 @@ __all__ = ["SERVER_LOGGER", "HttpProcessingError", "web"]
 
 
 def _is_the_servers_fault(record: logging.LogRecord) -> bool:
-    """Return whether to log a record: False for client errors, such as malformed requests and disconnects."""
+    """Return whether to log a record; client errors are not logged.
+
+    Examples are malformed requests, which are answered with 400, and disconnects.
+    """
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, (HttpProcessingError, web.RequestPayloadError, ConnectionError))
 

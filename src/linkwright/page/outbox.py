@@ -85,7 +85,10 @@ class InPieces:
         return self.payload.gone or self._given >= len(self.payload.full_frame)
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
-        """Return the next chunk, or None if there is none; the argument is ignored, because chunks are counted here."""
+        """Return the next chunk, or None if there is none.
+
+        The argument is ignored, because chunks are counted here.
+        """
         if self.done:
             return None, seen
         size = self._size()
@@ -254,7 +257,7 @@ class Line:
         return self._answers and not self._on_the_way
 
     def sending(self, size: int) -> float:
-        """Record that a message of `size` bytes is passed to the socket; returns the time to pass to `sent`."""
+        """Record that `size` bytes are passed to the socket; return the time to pass to `sent`."""
         now = self._clock()
         self._number += 1
         if self._number == 1:
@@ -291,6 +294,9 @@ class Line:
                 self._learn(arrived.size / max(took - self._shortest, took / 10, 1e-4))
 
     def _learn(self, rate: float) -> None:
-        """Update the rate with a measurement; as it may be an outlier, it at most doubles or halves the rate."""
+        """Update the rate with a measurement.
+
+        The measurement may be an outlier, so it at most doubles or halves the rate.
+        """
         known = self.room / _SHARE
         self.rate = min(max(rate, known / 2), known * 2)

@@ -1,4 +1,4 @@
-"""The server of a viewer from the moment it listens: serves the page even before there is a viewer."""
+"""The server of a viewer, which serves the page even before there is a viewer."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A viewer's context: its node, files and pages, graph changes, and the topics published by other nodes."""
+"""A viewer's context: node, files, pages, graph changes, and topics published by other nodes."""
 
 from __future__ import annotations
 
@@ -37,7 +37,9 @@ class PublishedTopics:
         self._topics: dict[str, list[str]] = {}
 
     def publishers(self, topic: str) -> list[tuple[str, str]]:
-        """Return the node and type of each publisher of a topic, whose name is resolved in the viewer's node.
+        """Return the node and type of each publisher of a topic.
+
+        The topic's name is resolved in the viewer's node.
 
         Raises:
             InvalidTopicNameError: the name is not valid.
@@ -138,7 +140,7 @@ class HeldTime:
         self.switching = False
 
     def show(self, clock: ROSClock, now_ns: int) -> bool:
-        """Hold a clock at a time, nanoseconds since the epoch; return False if the clock shows simulated time."""
+        """Hold a clock at a time in ns since the epoch; return False if it shows simulated time."""
         if clock.ros_time_is_active and not self._held:
             return False
         clock.override(now_ns)

@@ -22,7 +22,10 @@ _ROOMY = 2.5
 
 
 class ImageCompressor:
-    """Compresses a display's images to WebP; remembers the last suitable compression step for each size."""
+    """Compresses a display's images to WebP.
+
+    It remembers the last suitable compression step for each size.
+    """
 
     def __init__(self) -> None:
         self._steps: dict[int, int] = {}

@@ -14,7 +14,9 @@ _DOWN = (0.0, 0.0, -1.0)
 
 
 def lights_of(world: World) -> list[LightScene]:
-    """Return the lights of a world and of its links that are on, except lights whose pose is not known.
+    """Return the lights of a world and its links that are on.
+
+    A light of the world without a known pose is left out. If the pose of a link is not known, all lights of links are.
 
     Args:
         world: the world, with its includes resolved.

@@ -30,7 +30,10 @@ def camera_of(world: World) -> Transform | None:
 
 
 def robots_of(world: World) -> list[str]:
-    """Return the names of the models that are robots: not static, with sensors, plugins or several moving joints."""
+    """Return the names of the models that are robots.
+
+    They are not static, and have sensors, plugins or several moving joints.
+    """
     return [model.name for model in world.models if not model.static and _is_robot(model)]
 
 

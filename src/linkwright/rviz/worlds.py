@@ -117,7 +117,10 @@ class _Builder:
         return shape if shape.size else None
 
     def _form(self, link: str, shape: Shape, geometry: SdfShape) -> Transform | None:
-        """Set the kind and size of a shape; returns its pose in the geometry's frame, None for the identity."""
+        """Set the kind and size of a shape; return its pose in the geometry's frame or None.
+
+        None means the identity.
+        """
         match geometry:
             case Box():
                 shape.kind, shape.size = "box", list(geometry.size)
@@ -171,7 +174,10 @@ class _Builder:
             shape.texture = self._located(link, texture.diffuse, IMAGE_TYPES)
 
     def _heights(self, link: str, uri: str) -> NDArray[np.float32] | None:
-        """Return the heights of a heightmap, read as in the simulation; browsers read no TIFF or 16-bit grey."""
+        """Return the heights of a heightmap, read as in the simulation.
+
+        Browsers read neither TIFF nor 16-bit grey.
+        """
         if self._located(link, uri, IMAGE_TYPES) is None:
             return None
         try:

@@ -52,7 +52,10 @@ class Property(Record):
 
 
 class StatusRow(Record):
-    """A row below a display's Status. Its text is usually a phrase, which each page receives in its own language."""
+    """A row below a display's Status.
+
+    Its text is usually a phrase, which each page receives in its own language.
+    """
 
     name: str
     level: StatusLevel
@@ -60,7 +63,10 @@ class StatusRow(Record):
 
 
 class Place(Record):
-    """A place in a source file, 1-based, with the macro calls and includes that lead to it, innermost first."""
+    """A 1-based place in a source file, with the macro calls and includes that lead to it.
+
+    The calls and includes are ordered innermost first.
+    """
 
     file: str
     line: int
@@ -108,7 +114,10 @@ class Tree(ServerMessage):
 
 
 class DisplayProperties(ServerMessage):
-    """All property rows of one display, sent again when they change (the links of a new robot, the frames of TF)."""
+    """All property rows of one display, sent again when they change.
+
+    Examples are the links of a new robot and the frames of TF.
+    """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -117,7 +126,10 @@ class DisplayProperties(ServerMessage):
 
 
 class PropertyChanged(ServerMessage):
-    """A new value, set by any page or by the server. Enable boxes are the property ``<display>/Enabled``."""
+    """A new value, set by any page or by the server.
+
+    Enable boxes are the property ``<display>/Enabled``.
+    """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("id",)
 
@@ -149,7 +161,7 @@ Question = Literal["unsaved", "exists", "changed_on_disk"]
 
 # --- server to page ------------------------------------------------------------------------------------------------
 class EditName(Record):
-    """An edit that undo would revert or redo would repeat: its kind, and the name of the property or display."""
+    """An edit to undo or redo: its kind, and the name of the property or display."""
 
     kind: EditKind
     name: str
@@ -193,14 +205,14 @@ class TopicChoice(Record):
 
 
 class DisplayChoices(ServerMessage):
-    """Response to `AskDisplayChoices`: all classes of displays that can be added, and the topics of the graph."""
+    """The display classes that can be added, and the topics; response to `AskDisplayChoices`."""
 
     classes: list[DisplayClass]
     topics: list[TopicChoice]
 
 
 class Folder(ServerMessage):
-    """Response to `AskFolder`: the folders and configuration files in a folder of the server, by name."""
+    """The folders and configuration files in a server folder, by name; response to `AskFolder`."""
 
     path: str
     parent: str | None
@@ -209,7 +221,7 @@ class Folder(ServerMessage):
 
 
 class ConfigurationText(ServerMessage):
-    """Response to `AskConfigurationText`: the text of the file as it would be saved now, and a name for it."""
+    """The file's text as it would be saved, and a name; response to `AskConfigurationText`."""
 
     name: str
     text: str
@@ -222,7 +234,10 @@ class ConfigurationSaved(ServerMessage):
 
 
 class ConfigurationRefused(ServerMessage):
-    """The rejection of a page's request; with a question, the page may confirm it and repeat the request."""
+    """The rejection of a page's request.
+
+    With a question, the page may confirm it and repeat the request.
+    """
 
     message: str
     question: Question | None
@@ -259,7 +274,10 @@ class RemoveDisplays(PageMessage):
 
 
 class MoveDisplays(PageMessage):
-    """Move displays into a group (None for the top level), before one of its displays (None for the end)."""
+    """Move displays into a group, before one of its displays.
+
+    A group of None means the top level, and a display of None means the end.
+    """
 
     displays: list[str]
     group: str | None

@@ -18,7 +18,10 @@ class ArgumentChoice(Record):
 
 
 class ArgumentForm(ServerMessage):
-    """The arguments that a file needs, in order, and their initial values; without a file there is no form."""
+    """The arguments that a file needs, in order, and their initial values.
+
+    Without a file there is no form.
+    """
 
     file: str
     names: list[str]
@@ -45,7 +48,10 @@ class CallSite(Record):
 
 
 class SourceRange(Record):
-    """A range of characters in a text, 1-based, with exclusive end; `file` is empty for the expanded description."""
+    """A range of characters in a text, 1-based, with an exclusive end.
+
+    `file` is empty for the expanded description.
+    """
 
     file: str
     line: int
@@ -98,7 +104,9 @@ class JointMimic(Record):
 
 
 class JointDetails(Record):
-    """A joint as described: its origin in the parent's frame, its unit axis in the joint's frame; SI units.
+    """A joint as described; SI units.
+
+    The origin is in the parent's frame, and the unit axis in the joint's frame.
 
     A value that is not set or not finite is None.
     """
@@ -154,7 +162,10 @@ class DescriptionChanged(ServerMessage):
 
 
 class DescriptionText(ServerMessage):
-    """The text of a file of a description, or the expanded text if `file` is empty; None for an unrelated file."""
+    """The text of a file of a description, or the expanded text if `file` is empty.
+
+    The text is None for a file that is not part of the description.
+    """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display", "file")
 

@@ -36,7 +36,10 @@ class EditablePart(Record):
 
 
 class EditableParts(ServerMessage):
-    """The editable parts of a display's link, the parent joint first; `why_not` is the reason if there are none."""
+    """The editable parts of a display's link, the parent joint first.
+
+    `why_not` is the reason if there are none.
+    """
 
     display: str
     link: str
@@ -45,7 +48,7 @@ class EditableParts(ServerMessage):
 
 
 class EditedFile(Record):
-    """A file that an edit changes: its full name, and the removed, added and unchanged surrounding lines."""
+    """A file that an edit changes: its name, and removed, added and surrounding lines."""
 
     file: str
     diff: list[str]
@@ -64,7 +67,10 @@ class EditPreview(ServerMessage):
 
 
 class EditWritten(ServerMessage):
-    """The outcome of writing files; `refusal` is the reason if it failed; `files` were written, also by undo."""
+    """The outcome of writing files for an edit or an undo.
+
+    `refusal` is the reason if it failed; `files` were written.
+    """
 
     files: list[str]
     refusal: DiagnosticItem | None

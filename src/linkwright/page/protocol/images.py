@@ -43,7 +43,10 @@ class ImageFrame(DataContent):
 
 
 class ImageSize(PageMessage):
-    """The size of an Image display's panel in pixels, 0 while it is hidden; larger images need not be sent."""
+    """The size of an Image display's panel in pixels, 0 while it is hidden.
+
+    Larger images need not be sent.
+    """
 
     display: str
     width: int

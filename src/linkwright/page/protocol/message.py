@@ -48,7 +48,10 @@ class ServerMessage(Struct, tag_field="type", tag=_tag):
 
 
 class PageMessage(Struct, tag_field="type", tag=_tag, forbid_unknown_fields=True):
-    """A message from a page to the server; messages with missing, unknown or mistyped fields are rejected."""
+    """A message from a page to the server.
+
+    Messages with missing, unknown or mistyped fields are rejected.
+    """
 
 
 class DataContent(Struct, tag_field="kind", tag=_tag):
@@ -101,7 +104,10 @@ def _plain_or_localized(value: Any, language: str | None) -> Any:
 
 
 def redundancy_key(message: ServerMessage) -> str:
-    """Return the key by which a message replaces earlier ones: one for each class, or each value of its `NEWEST_OF`."""
+    """Return the key by which a message replaces earlier ones.
+
+    There is one key for each class, or for each value of its `NEWEST_OF`.
+    """
     return "\n".join((tag_of(message), *(str(getattr(message, name)) for name in message.NEWEST_OF)))
 
 
@@ -192,7 +198,10 @@ class ProgramIsLate(ServerMessage):
 
 
 class Received(PageMessage):
-    """The number of messages that the page has received, sent after the first and after each large message."""
+    """The number of messages that the page has received.
+
+    It is sent after the first message and after each large one.
+    """
 
     count: int
 
@@ -233,7 +242,10 @@ def pack_transforms(revision: int, stamp: float, poses: NDArray[Any], ages: NDAr
 
 
 def unpack_transforms(frame: bytes) -> tuple[int, NDArray[np.float64]]:
-    """Return the revision and the poses, shape (N, 7), of a `pack_transforms` frame; revision -1 for others."""
+    """Return the revision and the poses of a `pack_transforms` frame.
+
+    The poses have shape (N, 7); the revision is -1 for other frames.
+    """
     if len(frame) < _TRANSFORMS_HEADER.size or _TRANSFORMS_HEADER.unpack_from(frame)[0] != TRANSFORMS_KIND:
         return -1, np.empty((0, 7))
     _, revision, count, _, _ = _TRANSFORMS_HEADER.unpack_from(frame)
@@ -316,7 +328,7 @@ class _Arrays:
         self._length = 0
 
     def put_aside(self, value: Any) -> Any:
-        """Add an array and return its placeholder in the header; other values are converted to plain ones."""
+        """Add an array and return its placeholder in the header; convert other values to plain ones."""
         return self.put(value) if isinstance(value, np.ndarray) else plain(value)
 
     def put(self, array: NDArray[Any]) -> dict[str, list[Any]]:

@@ -44,7 +44,10 @@ class TopicTraffic(Record):
 
 
 class MessageField(Record):
-    """A field of a message with its value as text; `omitted` is the number of omitted elements or fields."""
+    """A field of a message with its value as text.
+
+    `omitted` is the number of omitted elements or fields.
+    """
 
     name: str
     kind: str
@@ -92,7 +95,10 @@ _SERIES = struct.Struct("<II")
 
 
 class PlotField(Record):
-    """A field that can be plotted, in the notation that follows the topic's name; `kind` is the type of its values."""
+    """A field that can be plotted, in the notation that follows the topic's name.
+
+    `kind` is the type of its values.
+    """
 
     path: str
     kind: str
@@ -107,14 +113,20 @@ class PlotSeries(Record):
 
 
 class SeriesState(Record):
-    """The reason why a series has no values; None if it has values or is waiting for the first message."""
+    """The reason why a series has no values.
+
+    It is None if the series has values or is waiting for the first message.
+    """
 
     id: int
     error: str | None
 
 
 class TopicFields(ServerMessage):
-    """The fields of a topic that can be plotted; response to `AskFields`, sent again once array lengths are known."""
+    """The fields of a topic that can be plotted; response to `AskFields`.
+
+    They are sent again once array lengths are known.
+    """
 
     topic: str
     kind: str
@@ -190,7 +202,10 @@ ParameterKind = Literal[
 
 
 class ParameterRow(Record):
-    """A parameter. `minimum`, `maximum` and `step` describe its range, as text; empty if there is no range."""
+    """A parameter of a node.
+
+    `minimum`, `maximum` and `step` describe its range, as text; they are empty without a range.
+    """
 
     name: str
     kind: ParameterKind
@@ -263,7 +278,9 @@ class DumpParameters(PageMessage):
 
 
 class LogLine(Record):
-    """A log record. `level` is as in rcl_interfaces/msg/Log: 10 debug, 20 info, 30 warning, 40 error, 50 fatal.
+    """A log record.
+
+    `level` is as in rcl_interfaces/msg/Log: 10 debug, 20 info, 30 warning, 40 error, 50 fatal.
 
     `time` is in seconds.
     """
@@ -278,7 +295,10 @@ class LogLine(Record):
 
 
 class LogLines(ServerMessage):
-    """New log records in the order of arrival; `missed` is the number of records that could not be sent."""
+    """New log records in the order of arrival.
+
+    `missed` is the number of records that could not be sent.
+    """
 
     lines: list[LogLine]
     missed: int
@@ -294,7 +314,10 @@ TwistKind = Literal["auto", "Twist", "TwistStamped"]
 
 
 class TeleopTarget(Record):
-    """The topic and type of a teleop pad; `auto` selects the type of the topic's subscribers, by default Twist."""
+    """The topic and type of a teleop pad.
+
+    `auto` selects the type of the topic's subscribers, by default Twist.
+    """
 
     topic: str
     kind: TwistKind
@@ -302,7 +325,7 @@ class TeleopTarget(Record):
 
 
 class TeleopState(ServerMessage):
-    """The state of a teleop pad: its type, the number of subscribers, and the reason if it does not publish."""
+    """The state of a teleop pad: type, number of subscribers, and why it does not publish."""
 
     topic: str
     kind: str

@@ -24,7 +24,7 @@ class CloudPoints(DataContent):
 
 
 class CellGrid(DataContent):
-    """GridCells: cell centres in the frame of the message, metres, shape (N, 3), and the side lengths of a cell."""
+    """GridCells: cell centres, shape (N, 3), and cell side lengths, metres, in the message's frame."""
 
     positions: Floats
     width: float

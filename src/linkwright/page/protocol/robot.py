@@ -151,7 +151,10 @@ class JointScene(Record):
 
 
 class RobotScene(ServerMessage):
-    """The robot of a RobotModel display; `revision` counts its descriptions. An empty list of links means no robot."""
+    """The robot of a RobotModel display; `revision` counts its descriptions.
+
+    An empty list of links means no robot.
+    """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -179,7 +182,7 @@ class AskProvenance(PageMessage):
 
 
 class LinkProvenance(ServerMessage):
-    """Where a link is written, with its macro calls and their values, as lines; response to `AskProvenance`."""
+    """Where a link is written, as lines with macro calls; response to `AskProvenance`."""
 
     display: str
     link: str

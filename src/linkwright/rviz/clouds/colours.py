@@ -1,4 +1,4 @@
-"""RViz's colour transformers: which ones a cloud supports, and the colours that they give its points."""
+"""RViz's colour transformers: which ones a cloud supports, and the colours that they give."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class ColourSettings:
 
 
 def supported_transformers(points: Points) -> tuple[str, ...]:
-    """Return the transformers that can colour these points; the first is the one that RViz would choose."""
+    """Return the transformers that can colour these points; RViz would choose the first."""
     found = [INTENSITY, AXIS, FLAT]
     if packed := _packed_channel(points):
         values = points.channels[packed]

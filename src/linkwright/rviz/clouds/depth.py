@@ -1,4 +1,4 @@
-"""Points from a depth image: depths along the camera's rays, coloured by an image of the same size."""
+"""Points from a depth image, optionally coloured by an image of the same size."""
 
 from __future__ import annotations
 

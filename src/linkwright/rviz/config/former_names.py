@@ -1,4 +1,4 @@
-"""The names that RViz 1 used for classes, and for keys of displays and tools that have changed since.
+"""The names that RViz 1 used for classes, and for keys that have changed since.
 
 A file of RViz 1 contains ``Class: rviz/Grid``, ``Topic: /scan`` next to ``Queue Size``, and ``Robot Description``.
 Such a file is read through these names, and edits are written under them, so that it remains a file of RViz 1.

@@ -1,4 +1,4 @@
-"""Locations of configuration files: recent files, folders of the server, and recovery files of unsaved edits.
+"""The locations of recent configurations, server folders, and recovery files for unsaved edits.
 
 When the program ends, the unsaved edits of each configuration are stored in a recovery file. RViz asks before its
 window is closed, but Ctrl-C in a terminal does not.
@@ -240,7 +240,7 @@ def _is_saved(config: RvizConfig, text: str) -> bool:
 
 
 def _name_for(name: str) -> str:
-    """Return a safe file name in the recovery folder for a configuration name, which a page may have chosen."""
+    """Return a safe recovery file name for a configuration name, which a page may have chosen."""
     mark = hashlib.sha256(os.fsencode(name)).hexdigest()[:8]  # distinguishes equal names
     stem = _UNFIT.sub("_", Path(name).stem)[:_LONGEST_NAME]
     return f"{stem or _UNNAMED}-{mark}{ENDING}"

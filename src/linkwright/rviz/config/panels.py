@@ -177,12 +177,12 @@ def is_shown(state: str, name: str) -> bool | None:
 
 
 def with_shown(state: str, name: str, *, shown: bool) -> str:
-    """Return the state with a dock shown or hidden; unchanged if the dock is already so or is unknown."""
+    """Return the window state with a dock shown or hidden; an unknown dock changes nothing."""
     content = _bytes(state)
     at = _flags(content, name)
     if at is None or bool(content[at] & _SHOWN) is shown:
         return state
-    # Change only these digits: the others keep their case.
+    # Change only these digits, to preserve the case of the others.
     return f"{state[: 2 * at]}{content[at] ^ _SHOWN:02x}{state[2 * at + 2 :]}"
 
 
@@ -226,7 +226,7 @@ def read_synchronization(document: Section) -> Synchronization:
 
 
 def write_synchronization(document: Section, synchronization: Synchronization) -> bool:
-    """Write the settings into the Time panel of a file that has one; returns whether that changed the file."""
+    """Write the settings to the Time panel of a file that has one; return whether it changed."""
     panel = _time_panel(document)
     if panel is None or read_synchronization(document) == synchronization:
         return False

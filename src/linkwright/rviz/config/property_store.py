@@ -17,7 +17,10 @@ _MANY = 30
 
 
 def property_id(owner: str, path: Iterable[str]) -> str:
-    """Return the ID of the property at a path of names below a display (or ``global``), as used in `protocol`."""
+    """Return the ID of the property at a path of names, as used in `protocol`.
+
+    The path starts below a display or ``global``.
+    """
     return "/".join((owner, *(name.replace("%", "%25").replace("/", "%2F") for name in path)))
 
 
@@ -213,7 +216,7 @@ class PropertyStore:
         if scalar is None or spec.kind == "group":
             return spec.default
         if spec.kind in ("enum", "frame") and not scalar.text:
-            return spec.default  # RViz writes this where it had nothing to choose from
+            return spec.default  # RViz writes an empty value if there was nothing to choose from
         try:
             return from_text(spec, scalar.text)
         except ValueError as error:
@@ -236,7 +239,7 @@ class PropertyStore:
         nested = spec.nested or bool(spec.children)
         if former is not None:
             path, text, nested = (former.key,), former.write(text), False
-            string = string and text not in ("true", "false")  # of Unreliable, which is a policy today
+            string = string and text not in ("true", "false")  # RViz 1's Unreliable, now a policy
         if self._recorded is not None and path[0] not in (memory.key for memory in self._recorded):
             self._recorded.append(self._place().memory(path[0]))
         self._place().put(path, text, string=string, nested=nested)

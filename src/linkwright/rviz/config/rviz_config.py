@@ -1,4 +1,4 @@
-"""The RViz configuration file (``.rviz``): reading, editing in place, and writing without loss of unknown content."""
+"""Reads RViz's configuration files (``.rviz``), edits them in place, and writes them."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ class DisplayConfig:
 
     @property
     def checked(self) -> bool:
-        """The display's own check box: ``Enabled``, or else ``Value``; off if both are missing, as in RViz."""
+        """The display's own check box: ``Enabled``, or else ``Value``, or else off, as in RViz."""
         text = self.section.text("Enabled")
         if text is None:
             text = self.section.text("Value")
@@ -197,7 +197,10 @@ class DisplayConfig:
 def read_displays(
     parent: Section, group: DisplayConfig | None, report: Callable[[Diagnostic], None]
 ) -> list[DisplayConfig]:
-    """Return the entries of ``Displays`` in a section; entries without a class are reported (RVIZ202) and ignored."""
+    """Return the entries of ``Displays`` in a section.
+
+    Entries without a class are reported (RVIZ202) and ignored.
+    """
     displays = []
     for section in parent.sections(_KEY):
         if section.scalar("Class") is None:
@@ -385,7 +388,9 @@ class RvizConfig:
         return None if size is None else size.spacing
 
     def sizes_for(self, diagonal: float, ground: float = 0.0) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-        """Return new values for the default grid and axes of a robot whose size was unknown: display, property, value.
+        """Return new values for the default grid and axes of a robot whose size was unknown.
+
+        Each item is a display, a property and a value.
 
         Sizes are returned only once, and only for properties that the user has not changed since.
 
@@ -512,7 +517,10 @@ class RvizConfig:
 
 
 class _Proposed:
-    """The proposed values of grid and axes for a robot whose meshes are not yet measured; None if they have no size."""
+    """The proposed grid and axes for a robot whose meshes are not yet measured.
+
+    The size is None if it is unknown.
+    """
 
     def __init__(self, displays: Sequence[DisplayConfig], size: ModelSize | None) -> None:
         self._displays = tuple(displays)
@@ -538,7 +546,7 @@ _ANY_SIZE = ModelSize(1.0, 1.0)
 def _sizes(
     displays: Sequence[DisplayConfig], size: ModelSize, ground: float = 0.0
 ) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-    """Return values for the displays of `RvizConfig.for_model`, given a robot's size and ground height.
+    """Return values for the displays of `RvizConfig.for_model` by robot size and ground height.
 
     Each item is a display, a property and a value.
     """

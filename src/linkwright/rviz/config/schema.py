@@ -120,7 +120,9 @@ def line_width() -> PropertySpec:
 
 
 def accept(spec: PropertySpec, value: object) -> PropertyValue:
-    """Return the value to store for a value sent by a page, converted to the kind's type and clamped to the bounds.
+    """Return the value to store for a value sent by a page.
+
+    It is converted to the kind's type and clamped to the bounds.
 
     Raises:
         ValueError: the property does not accept the value; the text states the expected value.
@@ -149,7 +151,9 @@ def from_text(spec: PropertySpec, text: str) -> PropertyValue:
 
 
 def in_place_of(spec: PropertySpec) -> PropertyValue:
-    """Return the value to use for unreadable text in a file: true for a check box, as in RViz, else the default.
+    """Return the value that replaces an unreadable text in a file.
+
+    The value is true for a ``bool``, as in RViz, or else the default.
 
     To Qt, and so to RViz, every text is true except ``false``, ``0`` and an empty one: ``no`` is true.
     """
@@ -200,7 +204,7 @@ def _validated(spec: PropertySpec, value: object) -> PropertyValue:
     if kind == "color":
         return value.lower() if _HEX_COLOUR.fullmatch(value) else None
     if kind == "frame":
-        return value.strip().removeprefix("/") or None  # tf2 knows no leading slash; RViz strips it too
+        return value.strip().removeprefix("/") or None  # tf2 frame names have no leading slash; RViz strips it too
     return value
 
 
@@ -236,19 +240,19 @@ def _converted(spec: PropertySpec, text: str) -> object:
 
 def _spelt_number(spec: PropertySpec, text: str) -> object:
     if "_" in text or not text.isascii():
-        return text  # valid numbers in Python, but not in Qt
+        return text  # Python accepts these numbers, but Qt does not
     try:
         number = float(text.replace(".", "", 1) if _YAML_NUMBER.fullmatch(text) else text)
     except ValueError:
         return text
     if math.isnan(number):
-        return spec.default  # RViz writes one after its camera was lost, and would draw nothing with it
+        return spec.default  # RViz writes NaN after its camera was lost, and would draw nothing with it
     return number if math.isfinite(number) else math.copysign(_INFINITE, number)
 
 
 def _spelt_colour(text: str) -> str:
     found = _RVIZ_COLOUR.fullmatch(text)
-    if found:  # a fourth part, such as an alpha, is ignored
+    if found:  # ignore a fourth part, such as an alpha
         return "#" + "".join(f"{min(max(int(part), 0), 255):02x}" for part in found.groups()[:3])
     if _SHORT_COLOUR.fullmatch(text):
         return "#" + "".join(2 * digit for digit in text[1:])
@@ -256,7 +260,7 @@ def _spelt_colour(text: str) -> str:
         import webcolors  # type: ignore[import-untyped]  # it ships no types; here, because names are rare
 
         with suppress(ValueError):
-            return str(webcolors.name_to_hex(text))  # has the names that Qt has: those of SVG
+            return str(webcolors.name_to_hex(text))  # knows the same names as Qt: those of SVG
     return text
 
 

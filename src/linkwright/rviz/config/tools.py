@@ -36,7 +36,10 @@ class ToolKind:
 
 
 def _topic(default: str, description: str) -> PropertySpec:
-    """Return the declaration of a topic to publish to, with its quality of service; the topic need not exist yet."""
+    """Return the declaration of a topic to publish to, with its QoS.
+
+    The topic need not exist yet.
+    """
     return replace(topic_spec(default=default, description=description), kind="string")
 
 

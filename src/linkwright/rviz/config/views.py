@@ -1,4 +1,4 @@
-"""RViz's views: the properties of each class, the current and saved views of a .rviz file, and sizes for a robot.
+"""RViz's views: properties, current and saved views of a .rviz file, and sizes for a robot.
 
 The properties determine the rows of the Views panel, how ``Views`` is read and written, and how values from pages are
 checked. The page implements how each class turns its values into a camera, and how the mouse changes them, see
@@ -56,7 +56,10 @@ class ModelSize:
 
     @property
     def focal_shape(self) -> float:
-        """The diameter of the disc at the focal point, m; RViz's default for robots that are large enough."""
+        """The diameter of the disc at the focal point, m.
+
+        It is RViz's default for robots that are large enough.
+        """
         return min(_LARGEST_FOCAL_SHAPE, _rounded(self.diagonal / 15))
 
     @property
@@ -78,7 +81,7 @@ FPS = "rviz_default_plugins/FPS"
 CURRENT_NAME = "Current View"
 PITCH_LIMIT = math.pi / 2 - 0.001
 
-_EIGHTH_TURN = 0.785398  # as RViz writes it
+_EIGHTH_TURN = 0.785398  # spelled as RViz writes it
 
 _NEAR_CLIP = PropertySpec(
     "Near Clip Distance",

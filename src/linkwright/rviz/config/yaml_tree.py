@@ -171,7 +171,7 @@ def parse(text: str, name: str) -> Section:
 
 
 def write(section: Section) -> str:
-    """Return the document as text: the order of keys, the scalars and the layout are those of the source."""
+    """Return the document as text, preserving key order, scalars and layout of the source."""
     return _laid_out(section.node, section.source.text)
 
 

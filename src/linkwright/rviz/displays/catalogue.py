@@ -49,7 +49,10 @@ def has_display(cls: str) -> bool:
 
 
 def display_classes() -> list[type[ViewerDisplay]]:
-    """Return the classes of displays that are drawn, and the group class, without classes that cannot be imported."""
+    """Return the display classes that are drawn, and the group class.
+
+    Classes that cannot be imported are left out.
+    """
     return [found for cls in extensions(GROUP) if isinstance(found := _display_class(cls), type)]
 
 

@@ -42,7 +42,10 @@ _PALETTE: tuple[Color, ...] = (
 
 
 def class_color(name: str, table: Mapping[str, Color]) -> Color:
-    """Return a class's colour: from the table, vision_msgs_rviz_plugins, a colour in its name, or a palette."""
+    """Return the colour of a class.
+
+    It comes from the table, vision_msgs_rviz_plugins, a colour in the name, or a palette.
+    """
     if not name:
         return UNNAMED
     lower = name.lower()
@@ -51,7 +54,9 @@ def class_color(name: str, table: Mapping[str, Color]) -> Color:
 
 
 def read_class_colors(path: str) -> dict[str, Color]:
-    """Return the colour table in a YAML file, ``NAME: {r: 255, g: 165, b: 0}``, with names in lower case.
+    """Return the colour table in a YAML file, with names in lower case.
+
+    An entry is ``NAME: {r: 255, g: 165, b: 0}``.
 
     Raises:
         ValueError: the file cannot be read, or is not such a table; the text gives the reason.

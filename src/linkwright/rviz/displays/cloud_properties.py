@@ -117,7 +117,9 @@ COLOUR_PROPERTIES = frozenset(spec.name for spec in TRANSFORMER_SPECS) - {"Color
 
 
 def scalar_specs(channel: str, least: float, largest: float, *, inverted: bool | None = None) -> Schema:
-    """Return the properties of a display that shows one number as a point; RViz hides those without a choice.
+    """Return the properties of a display that shows one number as a point.
+
+    RViz hides the properties without a choice.
 
     Args:
         channel: the channel that contains the number.

@@ -1,4 +1,4 @@
-"""Detection3D, Detection3DArray, BoundingBox3D and BoundingBox3DArray: boxes of vision_msgs in the scene."""
+"""Displays for the 3D detections and bounding boxes of vision_msgs."""
 
 from __future__ import annotations
 
@@ -60,7 +60,10 @@ class _BoxDisplay(RecentDisplay):
 
 
 def _numbers(pose: Any) -> tuple[float, ...]:
-    """Return a pose as x y z qx qy qz qw; a zero quaternion, the default in messages, means no rotation."""
+    """Return a pose as x y z qx qy qz qw.
+
+    A zero quaternion, the default in messages, means no rotation.
+    """
     position, turn = pose.position, pose.orientation
     w = turn.w if any((turn.x, turn.y, turn.z, turn.w)) else 1.0
     return (position.x, position.y, position.z, turn.x, turn.y, turn.z, w)

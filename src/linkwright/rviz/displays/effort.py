@@ -29,7 +29,9 @@ _TURNING = ("revolute", "continuous")
 
 
 class EffortDisplay(RecentDisplay):
-    """The torques of revolute and continuous joints as rings about their axes, larger the closer they are to the limit.
+    """Joint torques as rings about the joint axes, larger the closer they are to the limit.
+
+    Revolute and continuous joints are drawn.
 
     RViz draws the torques of revolute joints only, and orients the rings incorrectly for axes other than z.
     """

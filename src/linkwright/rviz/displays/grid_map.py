@@ -38,7 +38,10 @@ class GridMapDisplay(RecentDisplay):
     LENGTH = ("History Length",)
 
     def schema(self) -> Schema:
-        """Return the properties, whose names depend on the version: newer ones have *ColorMap* for *Rainbow*."""
+        """Return the properties.
+
+        Newer versions of the plugin write *ColorMap* instead of *Rainbow*.
+        """
         word = "ColorMap" if self.config.section.scalar("Use ColorMap") else "Rainbow"
         return (
             topic_spec(description=self.MESSAGE, filter_size=10),
@@ -231,7 +234,10 @@ class _Grid:
         return np.ascontiguousarray(np.roll(cells, begin, axis=(0, 1)))
 
     def points(self, heights: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
-        """Return the cell centres at the given heights, m, in the frame of the map; shape (rows, columns, 3)."""
+        """Return the cell centres at the given heights, shape (rows, columns, 3).
+
+        The centres are in the frame of the map, m.
+        """
         rows, columns = self.shape
         along = (rows / 2.0 - 0.5 - np.arange(rows)) * self._resolution
         across = (columns / 2.0 - 0.5 - np.arange(columns)) * self._resolution

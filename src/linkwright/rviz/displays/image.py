@@ -59,7 +59,7 @@ class ImageTopicDisplay(TopicDisplay):
         return (cls.MESSAGE, "sensor_msgs/msg/CompressedImage")
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return the type, the topic and the QoS of the subscription, which depend on the topic's transport."""
+        """Return the type, topic and QoS of the subscription, which depend on the transport."""
         source = self._named_source()
         return source.message_type, source.topic, super().subscription()[2]
 
@@ -107,7 +107,7 @@ class ImageTopicDisplay(TopicDisplay):
         return 1
 
     def _named_source(self) -> ImageSource:
-        """Return the topic and transport that the property names, with the message type if the graph knows it."""
+        """Return the topic and transport that the property names, and the message type if known."""
         source = ImageSource.of(self.properties.text(TOPIC))
         if not source.topic:
             return source
@@ -211,7 +211,9 @@ class ImageDisplay(ImageTopicDisplay):
         return self._panel is not None and (self._panel.width <= 0 or self._panel.height <= 0)
 
     def receive(self, message: Any) -> None:
-        """Limit the pixels sent to what panels show; while no panel is visible, unsubscribe after the next image.
+        """Limit the pixels sent to what panels show.
+
+        While no panel is visible, the display unsubscribes after the next image.
 
         Cameras that publish only while they have subscribers then publish no images for a hidden panel.
         """
@@ -379,7 +381,7 @@ class CameraDisplay(ImageTopicDisplay):
             self.show_again()
 
     def _model(self, image: Any) -> CameraModel | None:
-        """Return the camera model of an image; if there is none, show the reason in the status and return None."""
+        """Return the camera model of an image, or None; the status then shows the reason."""
         info = self._info
         if info is None:
             return None

@@ -83,14 +83,17 @@ class MapDisplay(TopicDisplay):
         self._updates = SideTopic(host, "map_msgs/msg/OccupancyGridUpdate", self._updated)
         self._map: Any = None
         self._cells: NDArray[np.uint8] = np.empty((0, 0), np.uint8)
-        self._is_own = False  # otherwise the cells are the message's, which other displays share
+        self._is_own = False  # if False, other displays share the message's cells
         self._pose: Pose | None = None
         self._sent_at = 0.0
         self._sending: asyncio.TimerHandle | None = None
         self._follow_topic(file_too=False)
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """Return the map's frame, by default ``map``, and its time: the latest unless the timestamp is used."""
+        """Return the map's frame, by default ``map``, and its time.
+
+        The time is the latest one unless the timestamp is used.
+        """
         frame, stamp_ns = super().frame_of(message)
         return frame or "map", stamp_ns if self.properties.flag(_USE_TIMESTAMP) else 0
 
@@ -244,7 +247,10 @@ class MapDisplay(TopicDisplay):
 
 
 def _size_mismatch(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
-    """Return the status text for a MapMetaData or update whose size does not match its number of cells."""
+    """Return the status text for a size that does not match the number of cells.
+
+    The size is that of a MapMetaData or of an update.
+    """
     return phrase(
         "Data size doesn't match width*height: width = {width}, height = {height}, data size = {size}",
         width=grid.width,

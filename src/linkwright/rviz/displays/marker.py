@@ -1,4 +1,4 @@
-"""rviz_default_plugins/Marker and rviz_default_plugins/MarkerArray, and displays composed of markers."""
+"""The displays rviz_default_plugins/Marker and MarkerArray, and displays drawn as markers."""
 
 from __future__ import annotations
 

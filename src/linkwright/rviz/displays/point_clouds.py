@@ -1,4 +1,4 @@
-"""LaserScan, PointCloud, PointCloud2, and points with a single value such as FluidPressure and Illuminance."""
+"""LaserScan, PointCloud, PointCloud2, and points with one value such as FluidPressure."""
 
 from __future__ import annotations
 
@@ -78,7 +78,10 @@ class CloudDisplay(TopicDisplay):
         self._computed: dict[str, tuple[float, float]] = {}
 
     def pixel_size(self) -> float:
-        """Return the size of a point per metre of depth, for a camera's pixels; 0 to use the properties' size."""
+        """Return the size of a point per metre of depth, for a camera's pixels.
+
+        A size of 0 means that the properties set the size.
+        """
         return 0.0
 
     def choose_transformer(self, transformer: str) -> None:

@@ -1,4 +1,4 @@
-"""Pose, PoseArray, PoseWithCovariance, Odometry and Path: poses as arrows or axes, and lines through poses."""
+"""Pose, PoseArray, PoseWithCovariance, Odometry and Path, drawn as arrows, axes and lines."""
 
 from __future__ import annotations
 
@@ -30,7 +30,10 @@ _AXES = (("Shape",), "Axes")
 
 
 def pose_shape(*, nested: bool = False) -> Schema:
-    """Return the properties for the shape of a pose; with ``nested`` the sizes are below ``Shape``, as in Odometry."""
+    """Return the properties for the shape of a pose.
+
+    With ``nested`` the sizes are below ``Shape``, as in Odometry.
+    """
     description = "Whether a pose is drawn as an arrow along its x or as axes."
     sizes = (
         PropertySpec("Color", "color", "#ff1900", "Colour of the arrow.", when=_ARROW),

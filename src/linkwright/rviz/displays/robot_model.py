@@ -239,7 +239,7 @@ class RobotModelDisplay(ViewerDisplay):
         return [self.scene]
 
     def receive(self, status: MeshStatus) -> None:
-        """Show a page's report on a mesh of this robot in the status; reports on earlier robots are ignored."""
+        """Show a page's report on a mesh of this robot; reports on earlier robots are ignored."""
         link = next((link for link in self.scene.links if link.name == status.link), None)
         if link is None or not any(shape.url == status.url for shape in (*link.visuals, *link.collisions)):
             return
@@ -290,7 +290,10 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_robot(reading.robot)
 
     def _topic_row(self, *, is_other: bool) -> StatusRow:
-        """Return the row that names the publisher if there are several; logs a warning once if their texts differ."""
+        """Return the row that names the publisher if there are several.
+
+        If their texts differ, a warning is logged once.
+        """
         before = None if self._publisher is None else self._source.current(self._publisher)
         self._publisher = self._source.publisher
         publishers = self._source.publishers()
@@ -358,7 +361,7 @@ class RobotModelDisplay(ViewerDisplay):
             self.publish_properties()
 
     def _box_changed(self, rows: RobotRows, path: Path) -> None:
-        """Set the check boxes that depend on a changed one, as RViz does, and then those that depend on them."""
+        """Set the check boxes that depend on a changed one, directly or indirectly, as RViz does."""
         style = self.properties.text(*STYLE)
         followers: list[Path] = []
         if path == STYLE:

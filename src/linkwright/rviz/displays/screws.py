@@ -1,4 +1,4 @@
-"""rviz_default_plugins/TwistStamped, AccelStamped and Wrench: each a linear and an angular vector."""
+"""The displays TwistStamped, AccelStamped and Wrench: a linear and an angular vector each."""
 
 from __future__ import annotations
 

@@ -118,7 +118,7 @@ class WorldDisplay(TopicDisplay):
         self._sent: tuple[Any, ...] = ()
         self._page_problems: dict[tuple[str, str], Phrase] = {}
 
-    # --- life --------------------------------------------------------------------------------------------------
+    # --- lifecycle ---------------------------------------------------------------------------------------------
 
     def start(self) -> None:
         """Also subscribe to the poses."""
@@ -240,7 +240,7 @@ class WorldDisplay(TopicDisplay):
         poses = np.array(content.poses, dtype=np.float64).reshape(-1, 7)
         moving = frozenset(self._posed)
         static = tuple(f"{model.name}{SEPARATOR}" for model in world.models if model.static)
-        for row, link in enumerate(content.links):  # moving links stay until the simulation publishes poses
+        for row, link in enumerate(content.links):  # moving links remain until the simulation publishes poses
             if link.name in moving and link.name in before and not link.name.startswith(static):
                 poses[row] = self._poses[before[link.name]]
         self._revision += 1
@@ -291,7 +291,7 @@ class WorldDisplay(TopicDisplay):
             return
         self.delete_status_row(_POSES)
         self._posed = batch.children
-        # Transforms of this very moment may not have arrived yet; those of the last poses have.
+        # Transforms for the current poses may not have arrived yet, but those for the previous poses have.
         self._locate()
         known = [place for place, row in enumerate(rows) if row >= 0]
         self._poses[[rows[place] for place in known]] = poses[known]
@@ -373,7 +373,9 @@ class WorldDisplay(TopicDisplay):
         )
 
     def _anchor(self, frames: frozenset[str]) -> tuple[int, str, Transform] | None:
-        """Return a link that is also a tf frame, with its pose in the Fixed Frame, or in tf's root if the world leads.
+        """Return a link that is also a tf frame, with its pose.
+
+        The pose is in the Fixed Frame, or in tf's root if the world leads.
 
         The first item is the link's row.
         """
@@ -446,6 +448,6 @@ def _unscoped(name: str) -> str:
 
 
 def _anchors(content: WorldContent) -> tuple[int, ...]:
-    """Return the links that can place the world, which are those with a unique frame name, in file order."""
+    """Return the links with a unique frame name, which can place the world, in file order."""
     counts = Counter(_unscoped(link.name) for link in content.links)
     return tuple(row for row, link in enumerate(content.links) if counts[_unscoped(link.name)] == 1)

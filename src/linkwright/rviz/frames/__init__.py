@@ -1,1 +1,1 @@
-"""Frame poses: sent to pages at the Frame Rate, and stored for a while to place messages at their time."""
+"""Frame poses: sent to pages at the Frame Rate, and stored to place messages at their time."""

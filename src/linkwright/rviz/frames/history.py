@@ -36,7 +36,9 @@ class OwnFrame:
 
 
 class FrameHistory:
-    """A tf2 buffer that subscribes only while a display uses it: showing only robots needs no history.
+    """A tf2 buffer that subscribes only while a display uses it.
+
+    Showing only robots needs no history.
 
     Displays may place frames that tf does not know, which can then be the Fixed Frame. Only this viewer sees these
     frames.

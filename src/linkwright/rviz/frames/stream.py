@@ -1,4 +1,6 @@
-"""Sends transforms from the graph to pages: only changes, at most at the Frame Rate, immediately after a pause.
+"""Sends transforms from the graph to pages, at most at the Frame Rate.
+
+Only changes are sent; after a pause they are sent immediately.
 
 `TimeControl` provides the time at which frames are shown, and `FrameView` the information for displays.
 """
@@ -80,7 +82,10 @@ class FrameView:
 
 
 def transform_status(frames: FrameView, frame: str) -> StatusRow:
-    """Return the Transform status row of a display in a frame (or in ``<Fixed Frame>``), in RViz's words."""
+    """Return the Transform status row of a display, in RViz's words.
+
+    The frame may be ``<Fixed Frame>``.
+    """
     if frame == FIXED_FRAME or frame in frames.placed:
         return StatusRow("Transform", "ok", phrase("Transform OK"))
     return StatusRow(
@@ -361,7 +366,7 @@ class FrameStream:
         return replace(snapshot, poses=compose(own.pose, snapshot.poses))
 
     def _stands_alone(self, frame: str) -> bool:
-        """Return whether a frame unknown to tf belongs to a robot or a display and is not connected to tf's frames."""
+        """Return whether a frame of a robot or display is unknown to tf and unconnected to its frames."""
         own = self._history.own(frame)
         return frame in self._own_frames() or (own is not None and own.parent is None)
 

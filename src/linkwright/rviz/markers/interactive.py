@@ -1,4 +1,4 @@
-"""Interactive markers: a client of a marker server, and the conversion of markers to drawable shapes.
+"""Interactive markers: the client of a marker server, and conversion to drawable shapes.
 
 The client receives all markers first, then changes, and all markers again after a lost change. Controls without markers
 get the same arrows, rings and buttons as in the ``interactive_markers`` package.

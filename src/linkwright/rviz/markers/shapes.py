@@ -1,4 +1,4 @@
-"""Conversion of visualization_msgs/msg/Marker to the page's shapes, and a store of a display's markers.
+"""Conversion of visualization_msgs/msg/Marker to the page's shapes, and a marker store.
 
 The rules and their texts are RViz's.
 """
@@ -151,7 +151,10 @@ def _pose(pose: Any) -> Transform:
 
 
 def unit_quaternion(q: Any) -> Quaternion:
-    """Return a geometry_msgs/msg/Quaternion with unit length; an unset one means no rotation, as in RViz."""
+    """Return a geometry_msgs/msg/Quaternion with unit length.
+
+    An unset quaternion means no rotation, as in RViz.
+    """
     return normalized(q.x, q.y, q.z, q.w)
 
 
@@ -240,7 +243,10 @@ _CHECKS: dict[MarkerKind, Callable[[MarkerShape], Phrase | None]] = {
 
 
 def _mesh(message: Any, shape: MarkerShape, index: MeshIndex) -> MarkerMesh:
-    """Return the mesh: data in the message, possible since Iron, or the file that the message refers to."""
+    """Return the mesh in the message, or the file that the message refers to.
+
+    Messages can contain meshes since Iron.
+    """
     name = message.mesh_resource
     carried = message.mesh_file
     if carried.filename and len(carried.data):
@@ -296,7 +302,9 @@ _MOST_GONE = 5000
 
 
 class MarkerStore:
-    """Markers by ID, with a revision for each change, which lets a page receive the changes since its last one.
+    """Markers by ID, with a revision for each change.
+
+    With the revisions, a page receives the changes since its last one.
 
     The store is the `outbox.Changes` of its display.
 

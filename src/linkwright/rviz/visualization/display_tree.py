@@ -1,4 +1,4 @@
-"""The displays of a configuration: adding, moving, grouping and enabling them, with undo and redo."""
+"""The displays of a configuration: adding, moving, grouping, enabling, undo and redo."""
 
 from __future__ import annotations
 
@@ -78,7 +78,10 @@ class History:
         return self._touched or self._saved_at != len(self._done)
 
     def is_at(self, subject: str) -> bool:
-        """Return whether an edit of a subject would be merged with the last edit, like the steps of a drag."""
+        """Return whether an edit of a subject would be merged with the last edit.
+
+        The steps of a drag are merged, for example.
+        """
         follows = self._clock() - self._last < PAUSE and not self._undone and self._saved_at != len(self._done)
         return follows and bool(self._done) and self._done[-1].subject == subject
 

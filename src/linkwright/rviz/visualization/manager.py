@@ -369,7 +369,9 @@ MOST_LINGERING = 8
 
 
 class Managers:
-    """The manager that pages share, and managers of single pages, which begin with a copy of the shared configuration.
+    """The manager that pages share, and managers of single pages.
+
+    The latter begin with a copy of the shared configuration.
 
     Args:
         context: the viewer's node, files and pages.

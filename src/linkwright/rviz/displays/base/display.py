@@ -197,10 +197,13 @@ class ViewerDisplay:
         """Handle displays that were added, removed, moved or renamed; each group precedes its contents."""
 
     def frames_changed(self) -> None:
-        """Handle changed frames: they appeared, disappeared, gained or lost a transform, or the Fixed Frame changed."""
+        """Handle a change of frames.
+
+        Frames appeared, disappeared, gained or lost a transform, or the Fixed Frame changed.
+        """
 
     def receive(self, message: Any) -> None:
-        """Handle a page's message for this display, such as the result of loading a mesh or an action on a marker."""
+        """Handle a page's message for this display, such as a mesh status or a marker action."""
 
     def time_changed(self) -> None:
         """Handle a pause, a resume, or a change of the time source."""

@@ -1,4 +1,4 @@
-"""Displays drawn as markers: pages receive new and changed markers, and the IDs of removed markers."""
+"""Displays drawn as markers, of which pages receive the changes and the IDs of removed ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Displays that show a topic's messages: subscription, waiting for transforms, and data for pages."""
+"""Displays of a topic's messages: subscription, waiting for transforms, and page data."""
 
 from __future__ import annotations
 
@@ -170,7 +170,7 @@ class TopicDisplay(DataDisplay, ABC):
         return message.header.frame_id, stamp.nanoseconds
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return the type, the topic and the QoS of the subscription; an empty topic means no subscription."""
+        """Return the type, topic and QoS of the subscription; an empty topic means none."""
         return self.MESSAGE, self.properties.text(TOPIC).strip(), qos_of(self.properties)
 
     def most_waiting(self) -> int:
@@ -329,7 +329,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._report_timer = asyncio.get_running_loop().call_later(_COUNT_PERIOD, report)
 
     def _silence(self) -> Phrase:
-        """Return the reason why no messages arrive, as far as the graph shows, and topics of the same type."""
+        """Return the reason why no messages arrive, and list topics of the same type."""
         message, topic, _ = self.subscription()
         publishers = self.context.published.publishers(topic)
         types = {topic_type for _, topic_type in publishers}
@@ -397,7 +397,10 @@ class TopicDisplay(DataDisplay, ABC):
         return True
 
     def _could_not_place(self, reason: Phrase, stamp_ns: int, *, is_late: bool) -> None:
-        """Report a message without a transform; if it is only late, report it after a while without placed messages."""
+        """Report a message without a transform.
+
+        A message that is only late is reported after a while without placed messages.
+        """
         if not is_late:
             self.set_status_row(TRANSFORM, "error", reason)
             return
@@ -467,7 +470,7 @@ class _Shown:
 
 
 class RecentDisplay(TopicDisplay):
-    """Shows the content of each of the most recent messages, at its frame's pose at the message's time.
+    """Shows the content of the most recent messages, each at its frame's pose at its time.
 
     A subclass sets `LENGTH` to the property with the number of messages, where 0 means all messages; without it the
     display shows one message.

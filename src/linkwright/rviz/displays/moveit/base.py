@@ -27,7 +27,10 @@ STATE = "State"
 
 
 class MoveItDisplay(StoredMarkersDisplay):
-    """A MoveIt display. A subclass draws in `draw`, which is called when the robot or a property changes."""
+    """A MoveIt display.
+
+    A subclass draws in `draw`, which is called when the robot or a property changes.
+    """
 
     DRAWN_AS = "rviz_default_plugins/MarkerArray"
 

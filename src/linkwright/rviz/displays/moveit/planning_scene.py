@@ -40,7 +40,8 @@ class PlanningSceneDisplay(MoveItDisplay):
     """The robot of a planning scene, its attached objects, and the objects around it.
 
     Topics carry only changes, so the display requests the full scene from move_group when it starts, and when
-    move_group appears later.
+    move_group
+    appears later.
     """
 
     CLASS = "moveit_rviz_plugin/PlanningScene"

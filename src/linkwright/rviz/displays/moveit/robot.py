@@ -1,4 +1,4 @@
-"""A robot drawn as markers in the state of a message: joint positions place its links, and tf is not used."""
+"""A robot drawn as markers in the state of a message; tf is not used to place its links."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ class PosableRobot:
                 )
             )
         for name, transform in zip(several.joint_names, several.transforms, strict=True):
-            if name not in self._joints:  # the virtual joint of an SRDF, which places the root in the world
+            if name not in self._joints:  # the virtual joint of an SRDF, which connects the root to the world
                 self.set_root(state, several.header.frame_id, transform)
         return unknown
 

@@ -29,7 +29,7 @@ _HIGHLIGHTS = "Highlights"
 
 
 class RobotStateDisplay(MoveItDisplay):
-    """The robot in the state of the topic's last message, with links in the colours that the message specifies."""
+    """The robot in the state of the topic's last message, with the link colours that it specifies."""
 
     CLASS = "moveit_rviz_plugin/RobotState"
     MESSAGE = "moveit_msgs/msg/DisplayRobotState"

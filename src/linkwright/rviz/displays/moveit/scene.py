@@ -94,7 +94,10 @@ class Scene:
         self._colors: dict[str, Color] = {}
 
     def apply(self, message: Any) -> None:
-        """Apply a moveit_msgs/msg/PlanningScene, which is a full scene or a difference, except the robot's joints."""
+        """Apply a moveit_msgs/msg/PlanningScene, except the robot's joints.
+
+        The message is a full scene or a difference.
+        """
         if not message.is_diff:
             self._objects.clear()
             self._held.clear()

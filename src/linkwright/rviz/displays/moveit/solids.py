@@ -165,7 +165,10 @@ def _mesh(mesh: Any) -> Form:
 
 
 def _plane(plane: Any) -> Form:
-    """Return a square around the point of the plane a x + b y + c z + d = 0 that is nearest to the origin."""
+    """Return a square in the plane a x + b y + c z + d = 0.
+
+    The square is centred on the point of the plane that is nearest to the origin.
+    """
     normal, distance = np.array(plane.coef[:3], dtype=np.float64), float(plane.coef[3])
     length = float(np.linalg.norm(normal))
     if not math.isfinite(length) or length == 0.0:

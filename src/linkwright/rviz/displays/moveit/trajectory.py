@@ -137,7 +137,10 @@ class MotionPlayer:
         return self.motion.states[self._place] if self.motion and self.is_playing else None
 
     def play(self, message: Any) -> None:
-        """Play a moveit_msgs/msg/DisplayTrajectory, after the current motion unless that is to be interrupted."""
+        """Play a moveit_msgs/msg/DisplayTrajectory.
+
+        It starts after the current motion, unless that is to be interrupted.
+        """
         if self.is_playing and not self._flag("Interrupt Display") and not self._flag(_LOOP):
             self._next = message
             return
