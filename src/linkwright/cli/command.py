@@ -164,7 +164,7 @@ def _dispatch(words: list[str], program: str) -> int:
 
 
 def _without_options(module: Verb, words: list[str]) -> argparse.Namespace | None:
-    """Return the arguments of a command line without options, read without a parser.
+    """Parse a command line without options, without an argparse parser; None if that is not possible.
 
     Returns None if the command cannot read them without a parser.
     """

@@ -314,7 +314,7 @@ class ModelView:
         self._failures.discard(what)
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run a coroutine in the background; the view ends only after it."""
+        """Run a coroutine in the background; the view waits for it before it closes."""
         task = asyncio.get_running_loop().create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._done)

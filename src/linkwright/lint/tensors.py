@@ -33,7 +33,7 @@ class Flaw:
 
 
 def tensor(inertial: Inertial) -> Matrix:
-    """Return the tensor in kg m2 as it is written, in the inertial frame."""
+    """Return the inertia tensor given in ``<inertial>``, unrotated, in kg m2."""
     i = inertial
     return (i.ixx, i.ixy, i.ixz), (i.ixy, i.iyy, i.iyz), (i.ixz, i.iyz, i.izz)
 

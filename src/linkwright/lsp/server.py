@@ -35,7 +35,7 @@ _KEPT_TEXTS = 200
 
 
 class LinkwrightServer(LanguageServer):
-    """Serves one editor.
+    """The language server for one editor.
 
     Attributes:
         project: the files of the editor's folders; None before it has named them.

@@ -57,7 +57,7 @@ def share_in_prefix(prefix: Path, name: str) -> Path | None:
 
 
 def packages_in_prefix(prefix: Path) -> Iterator[tuple[str, Path]]:
-    """Yield the name and share folder of every package in one prefix, by name."""
+    """Yield the name and share folder of every package in one prefix, sorted by name."""
     names = set(_entries(prefix / _MARKERS))
     share = prefix / "share"
     names.update(name for name in _entries(share) if (share / name / MANIFEST).is_file())

@@ -164,7 +164,7 @@ class _Converter:
         )
 
     def _weightless(self, link: urdf.Link) -> Inertial | None:
-        """Return the mass of a massless link: a tiny mass if links fixed to it have a mass."""
+        """Return a tiny inertial for a massless link that is fixed to links with mass; otherwise None."""
         rigid = self._rigid.of(link.name)
         return _FRAME if not self._lumps and rigid is not None and self._rigid.mass(rigid) > 0 else None
 

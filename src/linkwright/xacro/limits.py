@@ -102,7 +102,7 @@ class Budget:
         self._ends = thread_time() + limits.seconds
 
     def too_many_elements(self) -> Fault:
-        """Return the error for exhausted elements, XAC602."""
+        """Return the error for an expansion that exceeds the element limit (XAC602)."""
         message = phrase(
             "the expansion creates more than {limit:,} elements; a macro call counts as {macro}",
             limit=self._limits.elements,

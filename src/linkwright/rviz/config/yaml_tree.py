@@ -279,7 +279,7 @@ def make_section(section: Section, *path: str) -> tuple[Section, list[NewSection
 
 
 def unmake(new_sections: list[NewSection]) -> list[NewSection]:
-    """Remove mappings without content beyond their initial keys, and return the remaining ones."""
+    """Remove new mappings that are still empty, from the last to the first changed one; return the rest."""
     left = list(new_sections)
     while left and left[-1].section.keys() == left[-1].keys:
         gone = left.pop()

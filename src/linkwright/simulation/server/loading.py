@@ -103,7 +103,7 @@ class WorldLoader:
         self._text = text or None
 
     def answer(self, request: Any, response: Any) -> Any:
-        """Answer ``/load_world``."""
+        """Handle a request to the ``/load_world`` service."""
         resource = request.world_resource
         refused = (
             *(() if request.ignore_missing_or_unsupported_assets else _MISSING),

@@ -115,7 +115,7 @@ def unsteady_noise(powers: Powers, floor: NDArray[np.float64]) -> NDArray[np.flo
 
 
 def _first_loud(powers: Powers) -> int:
-    """Return the first frame nearly as loud as the loudest, but at least `_SOFT_BEGINNING`."""
+    """Return the index of the first frame within `_SOFTER` dB of the loudest, at least `_SOFT_BEGINNING`."""
     totals = np.convolve(powers.sum(axis=1), np.full(_SMOOTHED, 1.0 / _SMOOTHED), "same")
     loudest = np.sort(totals)[-_LOUDEST:].mean()
     return max(_SOFT_BEGINNING, int(np.argmax(totals > 10.0 ** (-_SOFTER / 10.0) * loudest)))

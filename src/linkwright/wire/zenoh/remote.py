@@ -74,7 +74,7 @@ class RemoteGraph(Outside):
             self._counts.pop((kind, data_key), None)
 
     def forget_nodes(self, full_name: str) -> None:
-        """Remove the nodes with a name whose tokens are no longer subscribed to."""
+        """Remove the tokens of all nodes with this full name, after unsubscribing from those tokens."""
         with self._lock:
             for key in [key for key, token in self._tokens.items() if token.kind is None]:
                 if self._tokens[key].node.full_name == full_name:

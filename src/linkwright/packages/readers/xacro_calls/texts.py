@@ -146,7 +146,7 @@ def _chosen(place: Open, choices: Mapping[str, Choice], selection: Selection) ->
 
 
 def choices_in(text: Text, choices: Mapping[str, Choice], given: Mapping[str, str]) -> list[str]:
-    """Return the choices that a text depends on, each once, without those that are given."""
+    """Return the names of the choices that a text depends on, without duplicates and those in `given`."""
     found: dict[str, None] = {}
     waiting: list[Text] = [text]
     while waiting:
