@@ -1,4 +1,4 @@
-"""The classes of displays by the names that .rviz files use for them.
+"""The registry of display classes, by the names that .rviz files use for them.
 
 Displays are found through the entry points ``linkwright.displays``, which are named as .rviz files name the class. A
 display class is imported when its first display is created: most configurations use only a few classes, and the program
@@ -44,7 +44,7 @@ GROUP = "linkwright.displays"
 
 
 def has_display(cls: str) -> bool:
-    """Return whether a class of displays is supported: it is drawn or is a group."""
+    """Return whether a display class is supported, which means that it is drawn or is a group."""
     return cls in extensions(GROUP)
 
 
@@ -57,7 +57,7 @@ def display_classes() -> list[type[ViewerDisplay]]:
 
 
 def make_display(host: DisplayHost, identity: str, config: DisplayConfig) -> ViewerDisplay:
-    """Return the display for an entry of the file; an `UnsupportedDisplay` if its class is not drawn."""
+    """Create the display for an entry of the file; an `UnsupportedDisplay` if its class is not available."""
     if not has_display(config.cls):
         return UnsupportedDisplay(host, identity, config)
     found = _display_class(config.cls)

@@ -42,9 +42,9 @@ _PALETTE: tuple[Color, ...] = (
 
 
 def class_color(name: str, table: Mapping[str, Color]) -> Color:
-    """Return the colour of a class.
+    """Return the colour of a detection class.
 
-    It comes from the table, vision_msgs_rviz_plugins, a colour in the name, or a palette.
+    The colour comes from the table, vision_msgs_rviz_plugins, a colour in the name, or a palette.
     """
     if not name:
         return UNNAMED

@@ -1,4 +1,4 @@
-"""rviz_default_plugins/DepthCloud."""
+"""The display rviz_default_plugins/DepthCloud."""
 
 from __future__ import annotations
 
@@ -154,7 +154,7 @@ class DepthCloudDisplay(CloudDisplay):
         return int(self.properties.number(QUEUE_SIZE))
 
     def pixel_size(self) -> float:
-        """Return the width of a pixel at a distance of one metre, if points are to be as large as pixels."""
+        """Return the width of a pixel at a distance of one metre if points are drawn as large as pixels."""
         return self._pixel * self.properties.number(AUTO_SIZE, SIZE_FACTOR) if self.properties.flag(AUTO_SIZE) else 0.0
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
@@ -191,7 +191,7 @@ class DepthCloudDisplay(CloudDisplay):
         super().time_changed()
 
     def reset(self) -> None:
-        """Discard all covered points."""
+        """Discard all points, including those that occlusion compensation keeps."""
         self._builder.reset()
         self._camera_pose = None
         self._pending = None

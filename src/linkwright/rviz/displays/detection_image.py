@@ -1,4 +1,4 @@
-"""Detections: an image overlaid with the boxes of a vision_msgs/Detection2DArray."""
+"""Displays an image overlaid with the boxes of a vision_msgs/Detection2DArray."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ _PATIENCE = 1.0
 
 
 class DetectionImageDisplay(ImageDisplay):
-    """Images with boxes around the detected objects, in their own panel.
+    """Shows images with boxes around the detected objects, in their own panel.
 
-    While detections arrive, an image is shown when the detections with its stamp have arrived, so it is delayed by the
-    detector. Detections for an image that is no longer stored are drawn over the current image.
+    While detections arrive, each image is shown when the detections with the same stamp have arrived, so images are
+    delayed by the detector. Detections for an image that is no longer stored are drawn over the current image.
     """
 
     CLASS = "linkwright/Detections"
@@ -63,7 +63,7 @@ class DetectionImageDisplay(ImageDisplay):
         self._detected_at = float("-inf")
 
     def schema(self) -> Schema:
-        """Return the properties of an image display, and those for the boxes."""
+        """Return the properties of an image display and of the boxes."""
         return (*super().schema(), *self.SCHEMA[len(ImageDisplay.SCHEMA) :])
 
     def changed(self, path: Path) -> None:

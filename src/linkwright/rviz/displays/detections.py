@@ -77,17 +77,17 @@ class BoundingBox3DArrayDisplay(_BoxDisplay):
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, _COLOUR)
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the boxes."""
+        """Return the boxes of a message, to be drawn in one colour."""
         boxes = self.boxes_of(message)
         return self._content(boxes, [(255, 255, 255)] * len(boxes), [-1.0] * len(boxes), [""] * len(boxes))
 
     def boxes_of(self, message: Any) -> Sequence[Any]:
-        """Return the BoundingBox3D messages in a message."""
+        """Return the vision_msgs/msg/BoundingBox3D messages that a message contains."""
         return list(message.boxes)
 
 
 class BoundingBox3DDisplay(BoundingBox3DArrayDisplay):
-    """A box in the Fixed Frame, because its message has no header."""
+    """Shows a single box, in the Fixed Frame because its message has no header."""
 
     CLASS = "vision_msgs_rviz_plugins/BoundingBox3D"
     MESSAGE = "vision_msgs/msg/BoundingBox3D"
@@ -157,7 +157,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
         super().reset()
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the boxes."""
+        """Return the boxes of the detections in a message, with the colours of their classes."""
         detections = self.detections_of(message)
         results = [best_result(detection) for detection in detections]
         colors = [class_color(name, self._table) for name, _ in results]
@@ -165,7 +165,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
         return self._content(boxes, colors, [score for _, score in results], [name for name, _ in results])
 
     def detections_of(self, message: Any) -> Sequence[Any]:
-        """Return the Detection3D messages in a message."""
+        """Return the vision_msgs/msg/Detection3D messages that a message contains."""
         return list(message.detections)
 
     def _read_colors(self) -> None:

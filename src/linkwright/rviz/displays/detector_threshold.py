@@ -1,4 +1,4 @@
-"""The parameter with which a detection node filters out detections below a minimum score."""
+"""Sets the parameter of a detection node that filters out detections below a minimum score."""
 
 from __future__ import annotations
 

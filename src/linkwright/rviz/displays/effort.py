@@ -1,4 +1,4 @@
-"""rviz_default_plugins/Effort."""
+"""The display rviz_default_plugins/Effort."""
 
 from __future__ import annotations
 
@@ -29,11 +29,10 @@ _TURNING = ("revolute", "continuous")
 
 
 class EffortDisplay(RecentDisplay):
-    """Joint torques as rings about the joint axes, larger the closer they are to the limit.
+    """Shows joint torques as rings about the joint axes; the closer a torque is to its limit, the larger the ring.
 
-    Revolute and continuous joints are drawn.
-
-    RViz draws the torques of revolute joints only, and orients the rings incorrectly for axes other than z.
+    Revolute and continuous joints are drawn. RViz draws the torques of revolute joints only, and orients the rings
+    incorrectly for axes other than z.
     """
 
     CLASS = "rviz_default_plugins/Effort"
@@ -88,7 +87,7 @@ class EffortDisplay(RecentDisplay):
         super().stop()
 
     def changed(self, path: Path) -> None:
-        """Follow another description, or remove the rings of the former prefix."""
+        """Follow another robot description, or remove the rings that were drawn with the former prefix."""
         super().changed(path)
         if path == (_DESCRIPTION,):
             self._follow()
@@ -97,7 +96,7 @@ class EffortDisplay(RecentDisplay):
             self.frames_changed()
 
     def enabled_changed(self) -> None:
-        """Subscribe to the description only while the display is enabled."""
+        """Subscribe to the robot's description only while the display is enabled."""
         super().enabled_changed()
         self._follow()
 

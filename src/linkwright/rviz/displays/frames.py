@@ -47,7 +47,7 @@ class AxesDisplay(ViewerDisplay):
 
 
 class GridDisplay(ViewerDisplay):
-    """A grid in a plane of a frame."""
+    """A grid in a coordinate plane of a frame."""
 
     CLASS = "rviz_default_plugins/Grid"
     SCHEMA = (
@@ -152,7 +152,7 @@ _DEEPEST = 60
 
 
 class TfDisplay(ViewerDisplay):
-    """Axes, names and arrows of the frames that tf knows.
+    """Shows the frames known to tf as axes, names and arrows.
 
     The page itself implements RViz's read-only rows of a frame (parent, position, orientation), see `Property`.
     """
@@ -193,7 +193,7 @@ class TfDisplay(ViewerDisplay):
             self.pages.publish(PropertyChanged(self.property_id(_ALL), False))
 
     def enabled_changed(self) -> None:
-        """Show or hide the frames and their status; frames that no display shows need not fade."""
+        """Show or hide the frames and their status, and update the time after which frames fade."""
         self.host.fading_changed()
         super().enabled_changed()
 

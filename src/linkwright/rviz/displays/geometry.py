@@ -22,7 +22,7 @@ from linkwright.rviz.displays.base.topic_display import TOPIC, RecentDisplay, To
 
 
 class GridCellsDisplay(TopicDisplay):
-    """Flat cells of equal size."""
+    """Shows flat cells of equal size."""
 
     CLASS = "rviz_default_plugins/GridCells"
     MESSAGE = "nav_msgs/msg/GridCells"
@@ -48,13 +48,13 @@ class GridCellsDisplay(TopicDisplay):
             self.send(content, pose=pose, stamp_ns=self.frame_of(message)[1])
 
     def _refuse(self, level: StatusLevel, text: Phrase) -> None:
-        """Remove the earlier cells, and show the reason in the row of the topic, as RViz does."""
+        """Remove the cells, and show in the topic's row why the message cannot be drawn, as RViz does."""
         self.forget()
         self.set_status_row(TOPIC, level, text)
 
 
 class PointStampedDisplay(RecentDisplay):
-    """The last points of a topic, as spheres that keep their place in the Fixed Frame."""
+    """Shows the last points of a topic as spheres, which keep their positions in the Fixed Frame."""
 
     CLASS = "rviz_default_plugins/PointStamped"
     MESSAGE = "geometry_msgs/msg/PointStamped"
@@ -68,7 +68,7 @@ class PointStampedDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the point."""
+        """Return the point of a message."""
         point = np.array([[message.point.x, message.point.y, message.point.z]], dtype=np.float32)
         return PointMarks(point) if self.is_finite(point[0]) else None
 
@@ -85,14 +85,14 @@ class PolygonDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the corners."""
+        """Return the corners of the polygon in a message."""
         corners = [(point.x, point.y, point.z) for point in message.polygon.points]
         points = np.array(corners, dtype=np.float32).reshape(-1, 3)
         return PolygonLine(points) if self.is_finite(points) else None
 
 
 class RangeDisplay(RecentDisplay):
-    """The last measurements of a range sensor, each drawn as a cone with the sensor's field of view."""
+    """Shows the last measurements of a range sensor, each as a cone with the sensor's field of view."""
 
     CLASS = "rviz_default_plugins/Range"
     MESSAGE = "sensor_msgs/msg/Range"

@@ -1,4 +1,4 @@
-"""grid_map_rviz_plugin/GridMap."""
+"""The display grid_map_rviz_plugin/GridMap."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ class BadGridError(ValueError):
 
 
 class GridMapDisplay(RecentDisplay):
-    """The last grid maps of a topic as surfaces: one layer sets the heights, another the colours."""
+    """Shows the last grid maps of a topic as surfaces: one layer sets the heights, another the colours."""
 
     CLASS = "grid_map_rviz_plugin/GridMap"
     MESSAGE = "grid_map_msgs/msg/GridMap"
     LENGTH = ("History Length",)
 
     def schema(self) -> Schema:
-        """Return the properties.
+        """Return the properties, named as in the plugin version that wrote the file.
 
         Newer versions of the plugin write *ColorMap* instead of *Rainbow*.
         """
@@ -91,7 +91,7 @@ class GridMapDisplay(RecentDisplay):
         )
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the surface."""
+        """Return the surface of a grid map."""
         try:
             made = self._surface(message)
         except BadGridError as error:
@@ -101,7 +101,7 @@ class GridMapDisplay(RecentDisplay):
         return made
 
     def changed(self, path: Path) -> None:
-        """Redraw the last map if the page does not apply the property itself."""
+        """Redraw the last map if a property changes that the page does not apply itself."""
         super().changed(path)
         if path[0] not in ("Topic", "Alpha", "Show Grid Lines", "History Length"):
             self.reset()
@@ -234,10 +234,7 @@ class _Grid:
         return np.ascontiguousarray(np.roll(cells, begin, axis=(0, 1)))
 
     def points(self, heights: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
-        """Return the cell centres at the given heights, shape (rows, columns, 3).
-
-        The centres are in the frame of the map, m.
-        """
+        """Return the cell centres at the given heights, metres, in the map's frame, shape (rows, columns, 3)."""
         rows, columns = self.shape
         along = (rows / 2.0 - 0.5 - np.arange(rows)) * self._resolution
         across = (columns / 2.0 - 0.5 - np.arange(columns)) * self._resolution

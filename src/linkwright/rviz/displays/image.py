@@ -38,7 +38,7 @@ MOST_PIXELS = 2_100_000
 
 
 class ImageTopicDisplay(TopicDisplay):
-    """Shows the images of a topic. As in RViz, the suffix of the topic's name selects the transport.
+    """Shows the images of a topic. As in RViz, the suffix of the topic name selects the transport.
 
     Images on ``/compressed`` topics are files that browsers can read. They are sent to the page unchanged, unless their
     values have more than 8 bits.
@@ -107,7 +107,7 @@ class ImageTopicDisplay(TopicDisplay):
         return 1
 
     def _named_source(self) -> ImageSource:
-        """Return the topic and transport that the property names, and the message type if known."""
+        """Return the topic and transport that the topic property selects, and the message type if it is known."""
         source = ImageSource.of(self.properties.text(TOPIC))
         if not source.topic:
             return source
@@ -192,7 +192,7 @@ _TOPIC_SPEC = topic_spec(
 
 
 class ImageDisplay(ImageTopicDisplay):
-    """Images in their own panel.
+    """Shows images in their own panel.
 
     As in RViz, the properties of the value range appear once an image has values of more than 8 bits.
     """
@@ -211,11 +211,11 @@ class ImageDisplay(ImageTopicDisplay):
         return self._panel is not None and (self._panel.width <= 0 or self._panel.height <= 0)
 
     def receive(self, message: Any) -> None:
-        """Limit the pixels sent to what panels show.
+        """Handle a page's report of its panel size, and send no more pixels than the panels show.
 
-        While no panel is visible, the display unsubscribes after the next image.
-
-        Cameras that publish only while they have subscribers then publish no images for a hidden panel.
+        While no panel is visible, the display unsubscribes after the next image. Cameras that publish only while they
+        have
+        subscribers then publish no images for a hidden panel.
         """
         before, self._panel = self._panel, message
         if self._is_hidden:
@@ -238,7 +238,7 @@ class ImageDisplay(ImageTopicDisplay):
         return max(1, int(max(width / panel.width, height / panel.height)))
 
     def schema(self) -> Schema:
-        """Return the properties; those of the value range only for images that have a range."""
+        """Return the properties; the value range is included only for images that have one."""
         if self._ranged:
             return self.SCHEMA
         return (_TOPIC_SPEC, *(replace(spec, hidden=True) for spec in _RANGE_SPECS))
@@ -298,7 +298,7 @@ _SPECS: Schema = (
 
 
 class CameraDisplay(ImageTopicDisplay):
-    """The scene as seen by a camera, with the camera's image behind or over it, in its own panel."""
+    """Shows the scene as seen by a camera, with the camera's image behind or over it, in its own panel."""
 
     CLASS = "rviz_default_plugins/Camera"
     SCHEMA = _SPECS
@@ -329,7 +329,7 @@ class CameraDisplay(ImageTopicDisplay):
             self.publish_properties()
 
     def _boxes_of(self, displays: Sequence[ViewerDisplay], group: DisplayConfig | None) -> Schema:
-        """Return a check box for each display of a group, by name, with those of its subgroups below it."""
+        """Return a check box for each display of a group, by name; check boxes of subgroups are nested."""
         found: dict[str, PropertySpec] = {}
         for display in displays:
             config = display.config
@@ -341,7 +341,7 @@ class CameraDisplay(ImageTopicDisplay):
         return tuple(found.values())
 
     def most_waiting(self) -> int:
-        """Return RViz's number of waiting messages, for which the display has no property."""
+        """Return RViz's limit on waiting messages; the display has no property for it."""
         return _MOST_WAITING
 
     def process_image(self, message: Any, pose: Pose | None) -> None:
@@ -381,7 +381,7 @@ class CameraDisplay(ImageTopicDisplay):
             self.show_again()
 
     def _model(self, image: Any) -> CameraModel | None:
-        """Return the camera model of an image, or None; the status then shows the reason."""
+        """Return the camera model of an image; if it is not known, show the reason in the status and return None."""
         info = self._info
         if info is None:
             return None

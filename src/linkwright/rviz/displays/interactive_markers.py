@@ -1,4 +1,4 @@
-"""rviz_default_plugins/InteractiveMarkers."""
+"""The display rviz_default_plugins/InteractiveMarkers."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _EVENTS = {"pose_update": 1, "menu_select": 2, "button_click": 3, "mouse_down": 
 
 
 class InteractiveMarkersDisplay(DataDisplay):
-    """The markers of an interactive marker server; the user's actions on them are sent to the server."""
+    """Shows the markers of an interactive marker server, and sends the user's actions on them to the server."""
 
     CLASS = "rviz_default_plugins/InteractiveMarkers"
     MESSAGE = "visualization_msgs/msg/InteractiveMarkerUpdate"
@@ -59,22 +59,22 @@ class InteractiveMarkersDisplay(DataDisplay):
     # --- lifecycle ---------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Connect, if the display is enabled."""
+        """Connect to the server if the display is enabled."""
         if self.enabled:
             self._connect()
 
     def stop(self) -> None:
-        """Disconnect, and withdraw from pages the files that its markers referred to."""
+        """Disconnect, and withdraw from pages the files that the markers referred to."""
         self._disconnect()
         self.context.meshes.replace(self.id, {})
 
     def changed(self, path: Path) -> None:
-        """Connect to another server, or recreate its markers."""
+        """Connect to another server, or recreate the markers of the current one."""
         if path in ((_NAMESPACE,), (_TRANSPARENCY,)):
             self.reset()
 
     def enabled_changed(self) -> None:
-        """Connect or disconnect."""
+        """Connect to the server, or disconnect from it."""
         self.reset()
 
     def reset(self) -> None:
@@ -152,7 +152,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         self.set_status_row(_CLIENT, level, text)
 
     def _soon(self, handle: Callable[[], None]) -> None:
-        """Handle an update of the server, or delay it while time is paused."""
+        """Handle an update from the server immediately, or after the pause while time is paused."""
         if self.host.time.paused:
             self._held.append(handle)
         else:
@@ -238,7 +238,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         self.send(shape, key=f"marker {name}", frame=frame, pose=at)
 
     def _frame_pose(self, marker: Any, frame: str) -> Pose | None:
-        """Return the pose of the marker's frame at the marker's time; None for a marker without a time."""
+        """Return the pose of the marker's frame at the marker's time, or None if the marker has no timestamp."""
         fixed_frame = self.host.frames.fixed_frame
         stamp = marker.header.stamp
         pose = self.context.transforms.pose(fixed_frame, frame, stamp.nanoseconds)

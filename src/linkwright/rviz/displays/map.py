@@ -1,4 +1,4 @@
-"""rviz_default_plugins/Map."""
+"""The display rviz_default_plugins/Map."""
 
 from __future__ import annotations
 
@@ -69,9 +69,9 @@ _SCHEMA: Schema = (
 
 
 class MapDisplay(TopicDisplay):
-    """An occupancy grid with partial updates.
+    """Shows an occupancy grid, with partial updates.
 
-    The map follows its frame. If the timestamp is used, it stays at its frame's pose at the map's time.
+    The map follows its frame. If the timestamp is used, the map stays at the pose that its frame had at the map's time.
     """
 
     CLASS = "rviz_default_plugins/Map"
@@ -90,15 +90,15 @@ class MapDisplay(TopicDisplay):
         self._follow_topic(file_too=False)
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """Return the map's frame, by default ``map``, and its time.
+        """Return the map's frame, by default ``map``, and the time of its pose.
 
-        The time is the latest one unless the timestamp is used.
+        The time is 0, which means the latest one, unless the timestamp is used.
         """
         frame, stamp_ns = super().frame_of(message)
         return frame or "map", stamp_ns if self.properties.flag(_USE_TIMESTAMP) else 0
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show a map; a map that is shown again keeps the updates applied to it."""
+        """Show a map; when the same map is shown again, the updates applied to it are kept."""
         self._pose = pose
         if message is not self._map and not self._load(message):
             return
@@ -116,7 +116,7 @@ class MapDisplay(TopicDisplay):
             self.show_again()
 
     def recalled(self) -> None:
-        """Subscribe to the updates next to the map's topic if the file does not name another topic."""
+        """Derive the update topic from the map's topic if the file does not name an update topic."""
         super().recalled()
         self._follow_topic(file_too=False)
 
@@ -135,7 +135,7 @@ class MapDisplay(TopicDisplay):
         self._updates.resume()
 
     def reset(self) -> None:
-        """Clear the map, and discard the map of a former topic."""
+        """Clear the map; after a change of topic, discard the former topic's map."""
         if self._sending is not None:
             self._sending.cancel()
             self._sending = None
@@ -151,7 +151,10 @@ class MapDisplay(TopicDisplay):
             self._sending = None
 
     def _follow_topic(self, *, file_too: bool) -> None:
-        """Subscribe to the update topic next to the map's, as RViz does; a file without one gets none."""
+        """Derive the update topic from the map's topic, as RViz does.
+
+        An update topic that the file names is replaced only with `file_too`. A file that names none stays without one.
+        """
         topic = self.properties.text(TOPIC).strip()
         updates = f"{topic}_updates" if topic else ""
         if self.config.section.text(_UPDATE_TOPIC) is None:
@@ -222,7 +225,7 @@ class MapDisplay(TopicDisplay):
         self._send_soon()
 
     def _send_soon(self) -> None:
-        """Send the map after a short delay, which combines many updates into one map."""
+        """Send the map after a short delay, so that several updates are sent as one map."""
         if self._sending is None:
             wait = max(0.0, self._sent_at + _UPDATE_PERIOD - time.monotonic())
             self._sending = asyncio.get_running_loop().call_later(wait, self._send_updated)
@@ -247,9 +250,9 @@ class MapDisplay(TopicDisplay):
 
 
 def _size_mismatch(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
-    """Return the status text for a size that does not match the number of cells.
+    """Return the status text for a map or update whose size does not match its number of cells.
 
-    The size is that of a MapMetaData or of an update.
+    `grid` is a MapMetaData or an update.
     """
     return phrase(
         "Data size doesn't match width*height: width = {width}, height = {height}, data size = {size}",
@@ -267,7 +270,7 @@ def _pose_of(origin: Any) -> list[float]:
 
 
 def _readings(info: Any) -> Iterator[tuple[Path, float | int]]:
-    """Yield the values of the read-only properties, from a nav_msgs/msg/MapMetaData."""
+    """Yield the paths and values of the read-only properties from a nav_msgs/msg/MapMetaData."""
     yield ("Resolution",), float(info.resolution)
     yield ("Width",), info.width
     yield ("Height",), info.height

@@ -1,4 +1,4 @@
-"""The displays rviz_default_plugins/Marker and MarkerArray, and displays drawn as markers."""
+"""The displays rviz_default_plugins/Marker and MarkerArray, and a base class for displays drawn as markers."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _DUPLICATES = "Duplicate Marker Check"
 
 
 class _Marker:
-    """A marker as received, and its expiry time in nanoseconds of the node's clock."""
+    """A received marker and the time at which it expires, in nanoseconds of the node's clock."""
 
     def __init__(self, reading: MarkerReading, message: Any, expires_ns: int | None) -> None:
         self.reading = reading
@@ -41,10 +41,10 @@ class _Marker:
 
 
 class MarkerDisplay(StoredMarkersDisplay):
-    """The markers of a topic.
+    """Shows the markers of a topic.
 
-    A marker whose frame has no known pose yet appears once the pose is known. Of the waiting markers, the last
-    ``Filter size`` are kept.
+    A marker whose frame has no known pose is shown once the pose is known. At most ``Filter size`` markers wait for
+    their poses; the oldest ones are dropped first.
     """
 
     CLASS = "rviz_default_plugins/Marker"
@@ -63,7 +63,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         self._clock = host.context.node.get_clock()
 
     def schema(self) -> Schema:
-        """Return the topic, and a check box for each namespace received."""
+        """Return the topic property, and a check box for each namespace received."""
         boxes = tuple(
             PropertySpec(name, "bool", True, "Show the markers of this namespace.") for name in self._namespaces
         )
@@ -201,7 +201,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         return known
 
     def _show(self) -> None:
-        """Send the changes, with all changes of a message together."""
+        """Send all changes of a message together."""
         self._frame_poses.clear()
         self.show_markers()
 
@@ -227,7 +227,7 @@ class MarkerDisplay(StoredMarkersDisplay):
 
 
 class MarkerArrayDisplay(MarkerDisplay):
-    """Markers in arrays. Any number of them may wait for their frames, whereas RViz drops them."""
+    """Shows markers received in arrays. Any number of them may wait for their frames, whereas RViz drops them."""
 
     CLASS = "rviz_default_plugins/MarkerArray"
     MESSAGE = "visualization_msgs/msg/MarkerArray"
@@ -257,7 +257,7 @@ class MarkerArrayDisplay(MarkerDisplay):
 
 
 class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
-    """A base class for displays of other packages: draws messages of any type as markers.
+    """A base class for displays of other packages that draw messages of any type as markers.
 
     A subclass sets `CLASS`, `MESSAGE` and `SCHEMA`, with a `topic_spec`, and overrides `markers`.
     """
@@ -278,7 +278,7 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
         """
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Draw a message."""
+        """Draw the markers of a message."""
         made = list(self.markers(message))
         header = getattr(message, "header", None)
         for marker in made:

@@ -1,4 +1,4 @@
-"""octomap_rviz_plugins/OccupancyGrid."""
+"""The display octomap_rviz_plugins/OccupancyGrid."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _MAP = "Octomap"
 
 
 class OctomapDisplay(StoredMarkersDisplay):
-    """The octomap of a topic as boxes, at the current pose of its header's frame."""
+    """Shows the octomap of a topic as boxes, at the current pose of the frame in its header."""
 
     CLASS = "octomap_rviz_plugins/OccupancyGrid"
     MESSAGE = "octomap_msgs/msg/Octomap"
@@ -116,7 +116,7 @@ class OctomapDisplay(StoredMarkersDisplay):
         self.frames_changed()
 
     def _chosen(self, cells: Cells, resolution: float) -> Cells:
-        """Return the selected cells, with cells deeper than the maximum depth merged into larger ones."""
+        """Return the cells to draw; cells below the maximum depth are merged into larger ones."""
         cells = rendered(cells, self.properties.text("Voxel Rendering"))
         height = cells.centers[:, 2]
         lowest, highest = (self.properties.number(f"{which}. Height Display") for which in ("Min", "Max"))

@@ -1,4 +1,4 @@
-"""LaserScan, PointCloud, PointCloud2, and points with one value such as FluidPressure."""
+"""The displays LaserScan, PointCloud and PointCloud2, and displays of one value such as FluidPressure."""
 
 from __future__ import annotations
 
@@ -61,10 +61,10 @@ class _Shown:
 
 
 class CloudDisplay(TopicDisplay):
-    """Shows points.
+    """The base class of displays that draw points.
 
     The colours are computed here and sent with the positions; the page applies style, size and opacity. With a Decay
-    Time, every message is separate content, which is removed after that time.
+    Time, the points of each message are sent separately and removed after that time.
     """
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
@@ -78,14 +78,14 @@ class CloudDisplay(TopicDisplay):
         self._computed: dict[str, tuple[float, float]] = {}
 
     def pixel_size(self) -> float:
-        """Return the size of a point per metre of depth, for a camera's pixels.
+        """Return the size of a point per metre of depth that makes the point as large as a camera pixel.
 
         A size of 0 means that the properties set the size.
         """
         return 0.0
 
     def choose_transformer(self, transformer: str) -> None:
-        """Choose a transformer that the messages support, without changing the one in the file."""
+        """Select a colour transformer that the messages support; the file's value is not changed."""
         if self.properties.set_read_only((COLOUR_TRANSFORMER,), transformer):
             self.publish_properties()
 
@@ -103,7 +103,7 @@ class CloudDisplay(TopicDisplay):
         )
 
     def show(self, points: Points, pose: Pose, stamp_ns: int) -> None:
-        """Show points, given the pose of their frame, and keep earlier ones for the Decay Time."""
+        """Show points at the pose of their frame, and keep earlier points for the Decay Time."""
         self._offer_transformers(points)
         now = time.monotonic()
         decay = self.properties.number(DECAY_TIME)
@@ -145,7 +145,7 @@ class CloudDisplay(TopicDisplay):
         super().stop()
 
     def fields_of(self, key: str, index: int) -> dict[str, float | str] | None:
-        """Return the values of a visible point in addition to its coordinates; None if it is no longer visible."""
+        """Return a visible point's values other than its coordinates, or None if the point is no longer visible."""
         shown = next((shown for shown in self._shown if shown.key == key), None)
         if shown is None or not 0 <= index < len(shown.points):
             return None
@@ -186,7 +186,7 @@ class CloudDisplay(TopicDisplay):
             self.choose_transformer(transformers[0])
 
     def _keep_bounds(self, auto: str, *paths: Path) -> None:
-        """Keep the last computed bounds in the properties when automatic bounds are switched off."""
+        """Store the last computed bounds in the properties when automatic bounds are switched off."""
         computed = self._computed.get(auto)
         if computed is None or self.properties.flag(auto):
             return
@@ -197,7 +197,7 @@ class CloudDisplay(TopicDisplay):
     # --- decay -------------------------------------------------------------------------------------------------
 
     def _expire(self) -> None:
-        """Remove points older than the Decay Time; if it is zero, remove all but the newest message."""
+        """Remove points older than the Decay Time; with a Decay Time of 0, keep only the newest message."""
         if self._decay is not None:
             self._decay.cancel()
             self._decay = None
@@ -283,10 +283,11 @@ class PointsDisplay(CloudDisplay):
 
 
 class LaserScanDisplay(PointsDisplay):
-    """The points of a planar laser scanner.
+    """Shows the points of a planar laser scanner.
 
-    Each ray starts at the scanner's pose at the ray's time, as in laser_geometry. If there are no transforms yet for
-    the end of a scan, the scan is placed by its beginning, whereas RViz would drop it.
+    Each ray starts at the pose that the scanner had at the time of the ray, as in laser_geometry. If transforms are not
+    yet
+    available for the end of a scan, the whole scan is placed by the pose at its beginning, whereas RViz would drop it.
     """
 
     CLASS = "rviz_default_plugins/LaserScan"
@@ -323,7 +324,12 @@ class LaserScanDisplay(PointsDisplay):
         return None
 
     def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
-        """Return the points in the Fixed Frame if the scanner moved, or else in the scanner's own frame."""
+        """Return the points and the pose of their frame.
+
+        If the scanner moved during the scan, the points are in the Fixed Frame and the pose is the identity. Otherwise
+        the
+        points are in the scanner's own frame.
+        """
         steps = len(message.ranges) - 1
         frame, stamp_ns = self.frame_of(message)
         seconds = steps * float(message.time_increment)
@@ -340,7 +346,7 @@ class LaserScanDisplay(PointsDisplay):
 
 
 class PointCloudDisplay(PointsDisplay):
-    """A cloud of points in the legacy message sensor_msgs/msg/PointCloud."""
+    """Shows point clouds in the legacy message type sensor_msgs/msg/PointCloud."""
 
     CLASS = "rviz_default_plugins/PointCloud"
     MESSAGE = "sensor_msgs/msg/PointCloud"
@@ -356,7 +362,7 @@ class PointCloudDisplay(PointsDisplay):
 
 
 class PointCloud2Display(PointsDisplay):
-    """A cloud of points."""
+    """Shows point clouds of type sensor_msgs/msg/PointCloud2."""
 
     CLASS = "rviz_default_plugins/PointCloud2"
     MESSAGE = "sensor_msgs/msg/PointCloud2"
@@ -377,13 +383,13 @@ class PointCloud2Display(PointsDisplay):
 
 
 class ScalarDisplay(PointsDisplay):
-    """A point at the origin of the sensor's frame, coloured by the measured value."""
+    """Shows a measured value as a coloured point at the origin of the sensor's frame."""
 
     FIELD: ClassVar[str]
     """The field of the message with the number, and the channel of the point."""
 
     def points_of(self, message: Any) -> Points:
-        """Return the one point."""
+        """Return the single point, coloured by the measured value."""
         value = np.array([getattr(message, self.FIELD)], np.float64)
         return Points(np.zeros((1, 3), np.float32), {self.FIELD: value})
 

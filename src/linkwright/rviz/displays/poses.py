@@ -1,4 +1,4 @@
-"""Pose, PoseArray, PoseWithCovariance, Odometry and Path, drawn as arrows, axes and lines."""
+"""The displays Pose, PoseArray, PoseWithCovariance, Odometry and Path, which draw arrows, axes and lines."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ _AXES = (("Shape",), "Axes")
 
 
 def pose_shape(*, nested: bool = False) -> Schema:
-    """Return the properties for the shape of a pose.
+    """Return the properties that select how a pose is drawn.
 
-    With ``nested`` the sizes are below ``Shape``, as in Odometry.
+    With ``nested``, the sizes are below ``Shape``, as in Odometry.
     """
     description = "Whether a pose is drawn as an arrow along its x or as axes."
     sizes = (
@@ -52,7 +52,7 @@ def pose_shape(*, nested: bool = False) -> Schema:
 
 
 def covariance() -> PropertySpec:
-    """Return the properties of RViz's CovarianceProperty."""
+    """Return the property group of RViz's CovarianceProperty."""
     position = (
         PropertySpec("Color", "color", "#cc33cc", "Colour of the ellipsoid."),
         alpha("Opacity of the ellipsoid.", 0.3),
@@ -120,7 +120,7 @@ def pose_rows(poses: Iterable[Any]) -> Floats:
 
 
 class PoseDisplay(RecentDisplay):
-    """The last pose of a topic."""
+    """Shows the last pose of a topic."""
 
     CLASS = "rviz_default_plugins/Pose"
     MESSAGE = "geometry_msgs/msg/PoseStamped"
@@ -128,20 +128,20 @@ class PoseDisplay(RecentDisplay):
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *pose_shape())
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the pose."""
+        """Return the pose of a message."""
         row = pose_row(message.pose)
         return PoseMarks(np.array([row], dtype=np.float32), NO_COVARIANCE) if self.is_finite(row) else None
 
 
 class PoseWithCovarianceDisplay(RecentDisplay):
-    """The last pose of a topic with its uncertainty."""
+    """Shows the last pose of a topic with its uncertainty."""
 
     CLASS = "rviz_default_plugins/PoseWithCovariance"
     MESSAGE = "geometry_msgs/msg/PoseWithCovarianceStamped"
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *pose_shape(), covariance())
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the pose with its covariance."""
+        """Return the pose and covariance of a message."""
         row = pose_row(message.pose.pose)
         spread = np.asarray(message.pose.covariance, dtype=np.float64)
         if not self.is_finite(row, spread):
@@ -163,7 +163,7 @@ _LOOK_OF_POSES = (
 
 
 class PoseArrayDisplay(RecentDisplay):
-    """The poses of the last message of a topic."""
+    """Shows the poses in the last message of a topic."""
 
     CLASS = "rviz_default_plugins/PoseArray"
     MESSAGE = "geometry_msgs/msg/PoseArray"
@@ -180,13 +180,13 @@ class PoseArrayDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the poses."""
+        """Return the poses of a message."""
         rows = pose_rows(message.poses)
         return PoseMarks(rows, NO_COVARIANCE) if self.is_finite(rows) else None
 
 
 class ParticleCloudDisplay(RecentDisplay):
-    """The particles of nav2's AMCL; more likely particles are larger (nav2_rviz_plugins)."""
+    """Shows the particles of Nav2's AMCL, more likely ones larger, as nav2_rviz_plugins does."""
 
     CLASS = "nav2_rviz_plugins/ParticleCloud"
     MESSAGE = "nav2_msgs/msg/ParticleCloud"
@@ -201,7 +201,7 @@ class ParticleCloudDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the poses and their weights."""
+        """Return the particles' poses and weights."""
         rows = pose_rows(particle.pose for particle in message.particles)
         weights = np.array([particle.weight for particle in message.particles], dtype=np.float32)
         return ParticleMarks(rows, weights) if self.is_finite(rows, weights) else None
@@ -211,7 +211,7 @@ _NORM_TOLERANCE = 10e-3
 
 
 class OdometryDisplay(RecentDisplay):
-    """The path of a robot, with a mark after each given distance or rotation."""
+    """Shows the path of a robot, with a mark after each given distance or rotation."""
 
     CLASS = "rviz_default_plugins/Odometry"
     MESSAGE = "nav_msgs/msg/Odometry"
@@ -242,7 +242,7 @@ class OdometryDisplay(RecentDisplay):
         self._marked: tuple[float, ...] | None = None
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the pose with its covariance, or None if it is too close to the last one."""
+        """Return the pose with its covariance, or None if it is invalid or too close to the last mark."""
         row = pose_row(message.pose.pose)
         spread = np.asarray(message.pose.covariance, dtype=np.float64)
         if not self.is_finite(row, spread):
@@ -256,7 +256,7 @@ class OdometryDisplay(RecentDisplay):
         return PoseMarks(np.array([row], dtype=np.float32), spread.astype(np.float32))
 
     def reset(self) -> None:
-        """Discard the marks; the next message adds one."""
+        """Discard the marks; the next message adds a mark in any case."""
         self._marked = None
         super().reset()
 
@@ -275,7 +275,7 @@ _ARROWS_SHOWN = (("Pose Style",), "Arrows")
 
 
 class PathDisplay(RecentDisplay):
-    """The last paths of a topic, as lines through their poses, optionally with the poses."""
+    """Shows the last paths of a topic as lines, optionally with the poses on them."""
 
     CLASS = "rviz_default_plugins/Path"
     MESSAGE = "nav_msgs/msg/Path"

@@ -1,4 +1,4 @@
-"""rviz_default_plugins/RobotModel."""
+"""The display rviz_default_plugins/RobotModel."""
 
 from __future__ import annotations
 
@@ -50,11 +50,11 @@ NO_ROWS = (PropertySpec(LINKS, "group", children=_OPTIONS),)
 
 
 class RobotRows:
-    """The rows of one robot.
+    """The property rows of a robot's links and joints.
 
     The page arranges the rows by the Link Tree Style; their positions in the file do not depend on it. A link has a
     check box if it has shapes. A joint has a check box if links with shapes are below it: in a tree all descendants
-    count, in a list only its child.
+    count, in a list only the joint's child link.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -86,7 +86,10 @@ class RobotRows:
         return [(LINKS, name) for name in self._links_of(self._robot.joints[joint], style)]
 
     def derived(self, style: str, is_on: Callable[[Path], bool]) -> dict[Path, bool]:
-        """Return the check boxes that follow from those of links: a joint's is on if those of all its links are."""
+        """Return the states of the check boxes that depend on the links' check boxes.
+
+        A joint's check box is on if the check boxes of all its links are on.
+        """
         on = {name: is_on((LINKS, name)) for name in self._shaped - _OPTION_NAMES}
         found: dict[Path, bool] = {
             (JOINTS, joint.name): all(on.get(name, True) for name in links)
@@ -154,9 +157,10 @@ _MANY_BOXES = 20
 
 
 class RobotModelDisplay(ViewerDisplay):
-    """A robot, from a description on a topic or in a file.
+    """Shows a robot, from a description on a topic or in a file.
 
-    If a new description cannot be read, the last valid robot stays, whereas RViz would show none. Frames of links that
+    If a new description cannot be read, the last valid robot is kept, whereas RViz would show none. Frames of links
+    that
     a new description lacks are removed from tf; RViz would show them until it is closed.
     """
 
@@ -186,7 +190,7 @@ class RobotModelDisplay(ViewerDisplay):
 
     @property
     def text(self) -> str:
-        """The description that the robot was read from."""
+        """The text of the description from which the robot was read."""
         return self._text
 
     @property
@@ -195,7 +199,7 @@ class RobotModelDisplay(ViewerDisplay):
         return self._file_problems
 
     def schema(self) -> Schema:
-        """Return the fixed properties, and rows for each link and joint."""
+        """Return the fixed properties, and the rows of each link and joint."""
         return (*_STATIC, *self._robot_specs)
 
     def start(self) -> None:
@@ -235,7 +239,7 @@ class RobotModelDisplay(ViewerDisplay):
             self._described(self._held)
 
     def messages(self) -> list[ServerMessage]:
-        """Return the robot."""
+        """Return the messages that describe the robot to a newly opened page."""
         return [self.scene]
 
     def receive(self, status: MeshStatus) -> None:
@@ -257,7 +261,10 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_status()
 
     def provenance(self, link: str) -> LinkProvenance | None:
-        """Return where a link was written, or None for an unknown link; takes as long as an expansion."""
+        """Return where a link was defined in the source files, or None for an unknown link.
+
+        The call takes as long as expanding the description.
+        """
         from linkwright.xacro.tracing.provenance_text import provenance_lines
 
         element = self.robot.links[link].element if self.robot and link in self.robot.links else None
@@ -290,9 +297,9 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_robot(reading.robot)
 
     def _topic_row(self, *, is_other: bool) -> StatusRow:
-        """Return the row that names the publisher if there are several.
+        """Return the status row of the topic, which names the publisher if there are several.
 
-        If their texts differ, a warning is logged once.
+        If a different description from another publisher replaces the current one, a warning is logged.
         """
         before = None if self._publisher is None else self._source.current(self._publisher)
         self._publisher = self._source.publisher
@@ -361,7 +368,7 @@ class RobotModelDisplay(ViewerDisplay):
             self.publish_properties()
 
     def _box_changed(self, rows: RobotRows, path: Path) -> None:
-        """Set the check boxes that depend on a changed one, directly or indirectly, as RViz does."""
+        """Set the check boxes that depend, directly or indirectly, on a changed one, as RViz does."""
         style = self.properties.text(*STYLE)
         followers: list[Path] = []
         if path == STYLE:

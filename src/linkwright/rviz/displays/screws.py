@@ -1,4 +1,4 @@
-"""The displays TwistStamped, AccelStamped and Wrench: a linear and an angular vector each."""
+"""The displays TwistStamped, AccelStamped and Wrench, each of a linear and an angular vector."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ def _screw_specs(linear: str, angular: str) -> Schema:
 
 
 class ScrewDisplay(RecentDisplay):
-    """The last messages with a linear and an angular vector, as arrows at the origin of their frame."""
+    """Shows the last messages with a linear and an angular vector, as arrows at the origin of their frame."""
 
     LENGTH = ("History Length",)
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the two vectors."""
+        """Return the linear and the angular vector of a message."""
         linear, angular = (self.number_list(vector) for vector in self.vectors(message))
         return Screw(linear, angular) if self.is_finite(linear, angular) else None
 
@@ -55,7 +55,7 @@ class TwistDisplay(ScrewDisplay):
     )
 
     def vectors(self, message: Any) -> tuple[Any, Any]:
-        """Return the velocities."""
+        """Return the linear and the angular velocity."""
         return message.twist.linear, message.twist.angular
 
 
@@ -67,7 +67,7 @@ class AccelDisplay(ScrewDisplay):
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *TwistDisplay.SCHEMA[1:])
 
     def vectors(self, message: Any) -> tuple[Any, Any]:
-        """Return the accelerations."""
+        """Return the linear and the angular acceleration."""
         return message.accel.linear, message.accel.angular
 
 

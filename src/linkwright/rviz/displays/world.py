@@ -1,4 +1,4 @@
-"""linkwright/World: the models of a simulated world, at the poses that the simulation publishes."""
+"""The display linkwright/World: the models of a simulated world, at the poses that the simulation publishes."""
 
 from __future__ import annotations
 
@@ -48,11 +48,11 @@ _UNMOVED = 1e-6
 
 
 class WorldDisplay(TopicDisplay):
-    """All models of a world, drawn with their visuals, each link at its pose in the simulation.
+    """Shows all models of a world with their visuals, each link at its pose in the simulation.
 
     The poses are in the frame ``world``. If neither tf nor the Fixed Frame has that name, the world is placed so that
     one of its links, usually a robot's, is at tf's pose for the frame of the same name. If the Fixed Frame has that
-    name and tf does not, tf's frames are placed so that the world does not move.
+    name and tf has no such frame, tf's frames are placed so that the world does not move.
     """
 
     CLASS = WORLD_DISPLAY
@@ -121,7 +121,7 @@ class WorldDisplay(TopicDisplay):
     # --- lifecycle ---------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Also subscribe to the poses."""
+        """Subscribe to the description and to the poses."""
         super().start()
         self._follow()
 
@@ -134,7 +134,7 @@ class WorldDisplay(TopicDisplay):
         self.context.meshes.replace(self.id, {})
 
     def changed(self, path: Path) -> None:
-        """Follow other topics."""
+        """Subscribe to other topics."""
         super().changed(path)
         if path == (_POSES,):
             self._follow()
@@ -154,7 +154,7 @@ class WorldDisplay(TopicDisplay):
         self._rays.resume()
 
     def time_reset(self) -> None:
-        """Keep the world, which is not published again, and measure the rays again."""
+        """Keep the world, which is not published again, and hide the lidar rays until new measurements arrive."""
         self._rays.forget()
 
     def reset(self) -> None:
@@ -171,7 +171,7 @@ class WorldDisplay(TopicDisplay):
         self._show_poses()
 
     def transforms_received(self) -> None:
-        """Place the world once the frames of its robots are known; afterwards its own poses apply."""
+        """Place the world once the frames of its robots are known; afterwards the published poses apply."""
         own = self.context.transforms.own(WORLD)
         placed = self._placed[1] is not None if not self._leads else own is not None and own.parent is not None
         if self._content.links and not placed and (self._leads or self._placed[0] != WORLD):
@@ -216,7 +216,7 @@ class WorldDisplay(TopicDisplay):
     # --- descriptions ------------------------------------------------------------------------------------------
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Read a description; the former world is shown until then."""
+        """Start to read a description; the former world is shown until the new one has been read."""
         self._cancel()
         self._reading = asyncio.get_running_loop().create_task(self._read(message.data))
 
@@ -240,7 +240,7 @@ class WorldDisplay(TopicDisplay):
         poses = np.array(content.poses, dtype=np.float64).reshape(-1, 7)
         moving = frozenset(self._posed)
         static = tuple(f"{model.name}{SEPARATOR}" for model in world.models if model.static)
-        for row, link in enumerate(content.links):  # moving links remain until the simulation publishes poses
+        for row, link in enumerate(content.links):  # moving links keep their poses for now
             if link.name in moving and link.name in before and not link.name.startswith(static):
                 poses[row] = self._poses[before[link.name]]
         self._revision += 1
@@ -355,7 +355,10 @@ class WorldDisplay(TopicDisplay):
     def _place_frames(self, row: int, frame: str, pose: Transform) -> None:
         """Place tf's frames in the world so that a frame is at its link's pose.
 
-        `pose` is the frame's pose in tf's root.
+        Args:
+            row: the row of the link.
+            frame: the frame that has the link's name.
+            pose: the frame's pose in tf's root frame.
         """
         placed = np.array(compose(tuple(self._poses[row]), invert(pose)))
         transforms, root = self.context.transforms, self._root(frame)
@@ -373,11 +376,12 @@ class WorldDisplay(TopicDisplay):
         )
 
     def _anchor(self, frames: frozenset[str]) -> tuple[int, str, Transform] | None:
-        """Return a link that is also a tf frame, with its pose.
+        """Find a link that is also a tf frame.
 
-        The pose is in the Fixed Frame, or in tf's root if the world leads.
-
-        The first item is the link's row.
+        Returns:
+            The link's row, the frame, and the frame's pose. The pose is in the Fixed Frame, or in tf's root frame if
+            the world
+            determines where tf's frames are. None if there is no such link with a known pose.
         """
         for row in self._anchors:
             frame = _unscoped(self._content.links[row].name)
@@ -390,7 +394,7 @@ class WorldDisplay(TopicDisplay):
         return None
 
     def _root(self, frame: str) -> str:
-        """Return the root frame of the tree that contains a frame."""
+        """Return the root frame of the tf tree that contains a frame."""
         names, parents = self.host.frames.names, self.host.frames.parents
         if frame not in names:
             return frame
@@ -448,6 +452,6 @@ def _unscoped(name: str) -> str:
 
 
 def _anchors(content: WorldContent) -> tuple[int, ...]:
-    """Return the links with a unique frame name, which can place the world, in file order."""
+    """Return the rows of the links that can place the world, because their frame name is unique, in file order."""
     counts = Counter(_unscoped(link.name) for link in content.links)
     return tuple(row for row, link in enumerate(content.links) if counts[_unscoped(link.name)] == 1)

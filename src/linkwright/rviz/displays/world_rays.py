@@ -1,4 +1,4 @@
-"""The measured rays of the lidars of a simulated world, received only while they are drawn."""
+"""Subscribes to the measured rays of the lidars of a simulated world while they are drawn."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ _MOST_KEPT = 64
 
 
 class LidarRays:
-    """Subscribes to measured lidar rays while they are drawn.
+    """Receives the measured rays of lidars, subscribing only while they are drawn.
 
     Args:
         host: the display's host.
         show: called with the rays of a lidar to draw.
-        hide: called with the name of a lidar whose rays are not drawn any more.
+        hide: called with the name of a lidar whose rays are no longer drawn.
     """
 
     def __init__(self, host: DisplayHost, show: Callable[[WorldRays], None], hide: Callable[[str], None]) -> None:
@@ -48,7 +48,7 @@ class LidarRays:
             self._measured(message)
 
     def forget(self) -> None:
-        """Draw no rays until new measurements arrive."""
+        """Discard the rays, so that none are drawn until new measurements arrive."""
         self._last.clear()
         self._let_go(set())
 
@@ -95,7 +95,7 @@ class LidarRays:
         ranges = np.asarray(message.ranges, dtype=np.float32)
         if lidar is not None and ranges.size != lidar.measured[0] * lidar.measured[1]:
             return
-        if name in self._last or len(self._last) < _MOST_KEPT:  # its world may arrive later, for example in a recording
+        if name in self._last or len(self._last) < _MOST_KEPT:  # its world may follow, as in recordings
             self._last[name] = message
         if lidar is None:
             return

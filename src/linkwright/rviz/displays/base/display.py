@@ -45,7 +45,7 @@ class DisplayHost(Protocol):
     time: TimeControl
 
     def robot_changed(self, gone: set[str]) -> None:
-        """Handle a display's new robot; `gone` contains the frames that only the former robot had."""
+        """Handle a change of a display's robot; `gone` contains the frames that only the former robot had."""
 
     def fading_changed(self) -> None:
         """Handle a change of a display's frame timeout or of its check box."""
@@ -58,20 +58,20 @@ _RANK: dict[StatusLevel, int] = {"ok": 0, "warn": 1, "error": 2}
 
 
 def worst(rows: list[StatusRow]) -> StatusLevel:
-    """Return the level of a display's own row, which is the most severe of its status rows."""
+    """Return the most severe level of a display's status rows, which is the level of the display's own row."""
     return max((row.level for row in rows), key=_RANK.__getitem__, default="ok")
 
 
 class ViewerDisplay:
     """A display of the Displays panel.
 
-    A subclass sets its RViz class and its properties, and overrides the methods of its events: start and stop,
+    A subclass sets its RViz class and its properties, and overrides the methods that handle events: start and stop,
     new values, changed frames.
 
     Args:
-        host: the visualization that it is part of.
-        identity: its id in the page, stable for its lifetime.
-        config: its entry of the .rviz file.
+        host: the visualization that contains the display.
+        identity: the display's ID in the page, which does not change during its lifetime.
+        config: the display's entry in the .rviz file.
     """
 
     CLASS: ClassVar[str]
@@ -134,7 +134,7 @@ class ViewerDisplay:
         )
 
     def set_property(self, path: Path, value: object) -> None:
-        """Set a value from a page, send it to all pages, and apply it.
+        """Set a property to a value received from a page, send it to all pages, and apply it.
 
         Raises:
             ValueError: the property does not accept the value.
@@ -151,7 +151,7 @@ class ViewerDisplay:
         self.pages.publish(PropertyChanged(f"{self.id}/Enabled", value))
 
     def recall(self, memories: Sequence[Memory]) -> None:
-        """Restore the file's values of some properties, send them to all pages, and apply them."""
+        """Restore some properties to the values of the file, send them to all pages, and apply them."""
         for path in self.properties.recall(memories):
             self.changed(path)
         self.properties.recall(memories)  # `changed` may have set further properties, so recall those too
@@ -159,7 +159,7 @@ class ViewerDisplay:
         self.publish_properties()
 
     def property_id(self, path: Path) -> str:
-        """Return the id of one of its properties."""
+        """Return the ID of one of the display's properties."""
         return self.properties.identity(path)
 
     def publish_properties(self) -> None:
@@ -197,7 +197,7 @@ class ViewerDisplay:
         """Handle displays that were added, removed, moved or renamed; each group precedes its contents."""
 
     def frames_changed(self) -> None:
-        """Handle a change of frames.
+        """Handle a change of frames or of the Fixed Frame.
 
         Frames appeared, disappeared, gained or lost a transform, or the Fixed Frame changed.
         """
@@ -212,11 +212,11 @@ class ViewerDisplay:
         """Handle a reset of time by discarding earlier messages."""
 
     def messages(self) -> list[ServerMessage]:
-        """Return messages for a page that opens now, in addition to the display's row."""
+        """Return the messages for a newly opened page, in addition to the display's row."""
         return []
 
     def data(self) -> list[Payload]:
-        """Return content for a page that opens now, which makes it draw the same as the other pages."""
+        """Return the content that a newly opened page needs to draw the same as the other pages."""
         return []
 
 
@@ -238,9 +238,9 @@ class DataDisplay(ViewerDisplay):
         stamp_ns: int = 0,
         shrink: Shrink | None = None,
     ) -> None:
-        """Send content for pages to draw, see `pack_data`; it is stored for pages that open later.
+        """Send content for pages to draw (see `pack_data`), and store it for pages that open later.
 
-        With `shrink`, pages with a slow connection receive as much of it as the connection can carry.
+        With `shrink`, pages with a slow connection receive as much of the content as the connection can carry.
         """
         pack = partial(pack_data, self.id, key=key, frame=frame, pose=pose, stamp=stamp_ns / 1e9)
         waits_under = f"data {self.id} {key}"
@@ -260,7 +260,7 @@ class DataDisplay(ViewerDisplay):
         self.pages.publish(DisplayForgotten(self.id, key))
 
     def set_status_row(self, name: str, level: StatusLevel, text: str) -> None:
-        """Set a status row; a `Phrase` is shown in the language of each page."""
+        """Add or replace a status row; a `Phrase` is shown in the language of each page."""
         row = StatusRow(name, level, text)
         if self._rows.get(name) != row:
             self._rows[name] = row

@@ -1,4 +1,4 @@
-"""Displays drawn as markers, of which pages receive the changes and the IDs of removed ones."""
+"""Displays that are drawn as markers; pages receive changed markers and the IDs of removed markers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from linkwright.rviz.markers import MarkerStore
 
 
 class StoredMarkersDisplay(TopicDisplay):
-    """A display with a `MarkerStore`, which a subclass fills; `show_markers` sends what has changed."""
+    """A display with a `MarkerStore`, which a subclass fills; `show_markers` sends the changes."""
 
     TRANSFORMED = False
 
@@ -43,6 +43,6 @@ class StoredMarkersDisplay(TopicDisplay):
             )
 
     def show_markers(self) -> None:
-        """Send the changes, with all changes of a message together."""
+        """Send all changes of a message together."""
         self.context.meshes.replace(self.id, self._meshes.folders)
         self.pages.send_data(self._store.key, self._store)

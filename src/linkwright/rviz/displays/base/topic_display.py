@@ -29,8 +29,8 @@ class SideTopic:
 
     Args:
         host: the display's host.
-        message_type: the type of its messages.
-        on_message: called with each of them.
+        message_type: the type of the topic's messages.
+        on_message: called with each message.
     """
 
     def __init__(self, host: DisplayHost, message_type: str, on_message: Callable[[Any], None]) -> None:
@@ -180,7 +180,7 @@ class TopicDisplay(DataDisplay, ABC):
     # --- what subclasses call ----------------------------------------------------------------------------------
 
     def show_again(self) -> None:
-        """Show the last message again."""
+        """Process the last message again, for example after a property has changed."""
         if self.last is not None:
             self._offer(self.last)
 
@@ -220,7 +220,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._offer(self._held.popleft())
 
     def time_reset(self) -> None:
-        """Show nothing until new messages arrive."""
+        """Discard the content; nothing is shown until new messages arrive."""
         self.last = None
         self._waiting.clear()
         self._held.clear()
@@ -246,7 +246,7 @@ class TopicDisplay(DataDisplay, ABC):
         if not topic:
             self.set_status_row(self.TOPIC_ROW, "error", phrase("Error subscribing: Empty topic name"))
             return
-        from linkwright.graph import SubscriptionEventCallbacks  # a robot's view needs no topics
+        from linkwright.graph import SubscriptionEventCallbacks  # a robot's view does not need it
 
         try:
             self._subscription = self.context.node.create_subscription(
@@ -298,7 +298,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._report_count()
 
     def _report_count(self) -> None:
-        """Show the number of messages, or the reason why there are none; repeat it while there are none."""
+        """Show the number of messages, or the reason why there are none, which is updated until one arrives."""
         if self._count > 0:
             seconds = time.monotonic() - self._since
             text = phrase("{count} messages received", count=self._count)
@@ -329,7 +329,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._report_timer = asyncio.get_running_loop().call_later(_COUNT_PERIOD, report)
 
     def _silence(self) -> Phrase:
-        """Return the reason why no messages arrive, and list topics of the same type."""
+        """Return the reason why no messages arrive, with the topics of the same type if there is no publisher."""
         message, topic, _ = self.subscription()
         publishers = self.context.published.publishers(topic)
         types = {topic_type for _, topic_type in publishers}
@@ -397,9 +397,9 @@ class TopicDisplay(DataDisplay, ABC):
         return True
 
     def _could_not_place(self, reason: Phrase, stamp_ns: int, *, is_late: bool) -> None:
-        """Report a message without a transform.
+        """Report a message whose transform is not available.
 
-        A message that is only late is reported after a while without placed messages.
+        If the message is only late, report it only if no message is placed for a while.
         """
         if not is_late:
             self.set_status_row(TRANSFORM, "error", reason)
@@ -438,7 +438,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._late = None
 
     def _process(self, message: Any, pose: Pose | None) -> None:
-        """Show a message; an unexpected error must not prevent the next messages from being shown."""
+        """Show a message; an unexpected error does not prevent later messages from being shown."""
         self.last = message
         try:
             self.process_message(message, pose)
@@ -470,10 +470,10 @@ class _Shown:
 
 
 class RecentDisplay(TopicDisplay):
-    """Shows the content of the most recent messages, each at its frame's pose at its time.
+    """Shows the content of the most recent messages, each at the pose that its frame had at the message's time.
 
-    A subclass sets `LENGTH` to the property with the number of messages, where 0 means all messages; without it the
-    display shows one message.
+    A subclass sets `LENGTH` to the property with the number of messages, where 0 means all messages. Without
+    `LENGTH` the display shows one message.
     """
 
     LENGTH: ClassVar[Path | None] = None
@@ -488,10 +488,10 @@ class RecentDisplay(TopicDisplay):
 
     @abstractmethod
     def content(self, message: Any) -> DataContent | None:
-        """Return the content of a message, in the frame of `frame_of`, or None to ignore it."""
+        """Return the content of a message, in the frame that `frame_of` returns, or None to ignore the message."""
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show a message and remove the oldest one."""
+        """Show a message, and remove the oldest one if more than `LENGTH` allows are shown."""
         assert pose is not None
         content = self.content(message)
         if content is None:
@@ -523,7 +523,7 @@ class RecentDisplay(TopicDisplay):
         super().reset()
 
     def refuse(self, text: str) -> None:
-        """Show in the status why the last message cannot be drawn."""
+        """Show in the status why the last message cannot be drawn, with the given text."""
         self.set_status_row(_MESSAGE, "error", text)
 
     def accept(self) -> None:

@@ -1,4 +1,4 @@
-"""The base of MoveIt's displays: a robot drawn in any state, and markers in groups."""
+"""The base class of MoveIt's displays, which draw a robot in any state and markers in groups."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ STATE = "State"
 
 
 class MoveItDisplay(StoredMarkersDisplay):
-    """A MoveIt display.
+    """A base class for MoveIt's displays.
 
-    A subclass draws in `draw`, which is called when the robot or a property changes.
+    A subclass overrides `draw`, which is called when the robot or a property changes.
     """
 
     DRAWN_AS = "rviz_default_plugins/MarkerArray"
@@ -44,7 +44,7 @@ class MoveItDisplay(StoredMarkersDisplay):
     # --- what subclasses override ------------------------------------------------------------------------------
 
     def draw(self) -> None:
-        """Draw all markers again: call `put` for each group, then `drawn`."""
+        """Draw all markers again: an implementation calls `put` for each group, then `drawn`."""
 
     def description_topic(self) -> str:
         """Return the topic of the robot's description."""
@@ -82,11 +82,11 @@ class MoveItDisplay(StoredMarkersDisplay):
     # --- lifecycle ---------------------------------------------------------------------------------------------
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return the type and topic to subscribe to."""
+        """Return the type, topic and QoS of the subscription."""
         return self.MESSAGE, self.properties.text(*self.TOPIC).strip(), QoSProfile(depth=10)
 
     def start(self) -> None:
-        """Also subscribe to the description."""
+        """Subscribe to the display's topic and to the robot's description."""
         super().start()
         self._follow()
 

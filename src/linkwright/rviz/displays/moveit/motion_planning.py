@@ -1,4 +1,4 @@
-"""moveit_rviz_plugin/MotionPlanning, without planning."""
+"""The display moveit_rviz_plugin/MotionPlanning, without planning."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _REQUEST_SPEC = PropertySpec(
 
 
 class MotionPlanningDisplay(PlanningSceneDisplay):
-    """The planning scene, the planned motions, and the first and last states of the last motion.
+    """Shows the planning scene, the planned motions, and the first and last states of the last motion.
 
     The display does not plan: properties for planning requests are kept in the file and have no rows.
     """
@@ -49,7 +49,7 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         return (*super().schema(), _REQUEST_SPEC, path)
 
     def start(self) -> None:
-        """Also subscribe to motions."""
+        """Subscribe to the planning scene and to motions."""
         super().start()
         self._follow_motions()
 
@@ -65,7 +65,7 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         self._follow_motions()
 
     def changed(self, path: Path) -> None:
-        """Subscribe to other motions, or restart the motion if it now loops."""
+        """Subscribe to other motions, or restart the motion if looping was just switched on."""
         if path == (PATH, TRAJECTORY_TOPIC):
             self._player.forget()
             self._follow_motions()

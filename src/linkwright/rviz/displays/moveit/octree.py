@@ -1,8 +1,9 @@
-"""Reads octrees as OctoMap's library writes them to octomap_msgs/msg/Octomap.
+"""Reads octrees in the format in which the OctoMap library writes them to octomap_msgs/msg/Octomap.
 
-Both forms store the tree from the root, each node before its children and the children in order. The binary form has
-two bits for each child of an inner node: free, occupied, or an inner node. The full form has a float with the log-odds
-that a node is occupied, further data of the tree's class, and a byte with one bit for each existing child.
+Both the binary and the full form store the tree from the root, each node before its children and the children in
+order. The binary form has two bits for each child of an inner node: free, occupied, or an inner node. The full form has
+a float with the log-odds that a node is occupied, further data of the tree's class, and a byte with one bit for each
+existing child.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ class Cells:
     probabilities: NDArray[np.float64]
 
     def chosen(self, mask: NDArray[np.bool_]) -> Cells:
-        """Return the cells that a mask selects."""
+        """Return the cells selected by a mask."""
         return Cells(self.centers[mask], self.sizes[mask], self.probabilities[mask])
 
 
@@ -99,7 +100,13 @@ def _read_binary(data: bytes, resolution: float) -> Cells:
 
 
 def _leaves_of(inner: NDArray[np.int64], bits: NDArray[np.int64], resolution: float) -> Cells:
-    """Return the leaves among the children of inner nodes, shape (N, 4), as given by two bits each."""
+    """Return the leaves among the children of inner nodes.
+
+    Args:
+        inner: the inner nodes, shape (N, 4).
+        bits: for each inner node, the states of its eight children, two bits each.
+        resolution: the edge length of the smallest cells, metres.
+    """
     states = bits[:, None] >> 2 * np.arange(8) & 3
     parents, children = np.nonzero((states == _FREE) | (states == _OCCUPIED))
     if len(parents) > MOST_CELLS:
@@ -156,7 +163,7 @@ def _child(node: _Node, child: int) -> _Node:
 
 
 class _Leaves:
-    """Collects the leaves of a tree while it is read."""
+    """Collects the leaves of an octree while the tree is read."""
 
     def __init__(self) -> None:
         self._nodes: list[_Node] = []

@@ -1,4 +1,4 @@
-"""moveit_rviz_plugin/PlanningScene."""
+"""The display moveit_rviz_plugin/PlanningScene."""
 
 from __future__ import annotations
 
@@ -37,11 +37,10 @@ _HELD = "Scene Robot holds"
 
 
 class PlanningSceneDisplay(MoveItDisplay):
-    """The robot of a planning scene, its attached objects, and the objects around it.
+    """Shows the robot of a planning scene, its attached objects, and the objects around it.
 
-    Topics carry only changes, so the display requests the full scene from move_group when it starts, and when
-    move_group
-    appears later.
+    The topic carries only changes, so the display requests the full scene from move_group when the display starts, and
+    when move_group appears later.
     """
 
     CLASS = "moveit_rviz_plugin/PlanningScene"
@@ -66,22 +65,22 @@ class PlanningSceneDisplay(MoveItDisplay):
         return f"/{namespace}/{name}" if namespace and name and not name.startswith("/") else name
 
     def start(self) -> None:
-        """Also request the scene."""
+        """Subscribe, and request the full scene."""
         super().start()
         self._ask()
 
     def stop(self) -> None:
-        """Unsubscribe, and cancel requests."""
+        """Unsubscribe, and cancel pending requests for the scene."""
         self._leave()
         super().stop()
 
     def enabled_changed(self) -> None:
-        """Subscribe only while enabled; when enabled again, request the scene, which was discarded."""
+        """Subscribe and request the full scene when the display is enabled; unsubscribe when it is disabled."""
         super().enabled_changed()
         self._ask()
 
     def changed(self, path: Path) -> None:
-        """Request the scene from another move_group."""
+        """Apply a changed property; request the scene again if the move_group namespace or the topic changes."""
         if path == (NAMESPACE,):
             self._restart()
             self._follow()
@@ -103,7 +102,7 @@ class PlanningSceneDisplay(MoveItDisplay):
         super().reset()
 
     def robot_changed(self) -> None:
-        """Apply the last state again, because it may have arrived before the description."""
+        """Apply the last state again, because that state may have arrived before the robot's description."""
         self.scene.state = JointPositions()
         if self._state is not None:
             self._apply_state(self._state)
@@ -121,7 +120,7 @@ class PlanningSceneDisplay(MoveItDisplay):
         self._draw_soon()
 
     def draw(self) -> None:
-        """Draw the scene."""
+        """Draw the robot and the objects of the scene."""
         if self._due is not None:
             self._due.cancel()
             self._due = None

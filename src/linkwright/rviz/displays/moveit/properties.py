@@ -1,4 +1,4 @@
-"""The properties shared by MoveIt's displays. Names and defaults are those of moveit_rviz_plugin."""
+"""The properties shared by MoveIt's displays, with the names and defaults of moveit_rviz_plugin."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TRAJECTORY_TOPIC = "Trajectory Topic"
 
 
 def fraction(name: str, default: float, description: str) -> PropertySpec:
-    """Return a property for an opacity, with the given name."""
+    """Return an opacity property with the given name."""
     return PropertySpec(name, "float", default, description, minimum=0.0, maximum=1.0)
 
 
@@ -84,7 +84,7 @@ def scene_robot_spec(links: Sequence[str]) -> PropertySpec:
 
 
 def path_specs(links: Sequence[str]) -> tuple[PropertySpec, ...]:
-    """Return the properties for playing a motion."""
+    """Return the properties that control how a motion is played."""
     return (
         PropertySpec(
             TRAJECTORY_TOPIC,
@@ -115,7 +115,7 @@ def path_specs(links: Sequence[str]) -> tuple[PropertySpec, ...]:
 
 
 def links_spec(links: Sequence[str]) -> PropertySpec:
-    """Return the check boxes of links that have shapes."""
+    """Return the check boxes of the links that have shapes."""
     boxes = tuple(
         PropertySpec(name, "bool", True, "Draw this link.", children=(alpha("Opacity of this link."),))
         for name in links
@@ -151,13 +151,13 @@ def link_alphas(properties: PropertyStore, robot: PosableRobot, above: Path = ()
 def look(
     properties: PropertyStore, robot: PosableRobot, namespace: str, above: Path = (), color: str | None = None
 ) -> Look:
-    """Return the appearance of a robot from the properties below a path.
+    """Return the appearance of a robot that the properties below a path describe.
 
     Args:
         properties: the display's properties.
         robot: the robot whose links have check boxes.
         namespace: the markers' namespace.
-        above: the path of the group that has the properties.
+        above: the path of the group that contains the properties.
         color: the colour of all links, such as ``#963296``; None to use the links' own colours.
     """
     return Look(

@@ -1,4 +1,4 @@
-"""A robot drawn as markers in the state of a message; tf is not used to place its links."""
+"""Draws a robot as markers in the state given by a message; tf is not used to place its links."""
 
 from __future__ import annotations
 
@@ -144,7 +144,7 @@ class PosableRobot:
         return unknown
 
     def set_root(self, state: JointPositions, frame: str, transform: Any) -> None:
-        """Set the root's pose in a state from a geometry_msgs/msg/Transform relative to a frame."""
+        """Set the root's pose in a state from a geometry_msgs/msg/Transform that is relative to a frame."""
         at, turn = transform.translation, transform.rotation
         if not all(map(math.isfinite, (at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w))):
             raise UnusableStateError(phrase("The state has invalid floating point values (nans or infs)"))
@@ -175,7 +175,7 @@ class PosableRobot:
         return unknown
 
     def link_poses(self, state: JointPositions) -> dict[str, Transform]:
-        """Return the poses of the links in a state, relative to `frame_of` that state."""
+        """Return the poses of the links in a state, relative to the frame that `frame_of` returns."""
         matrices = self._tree.forward(state.values)
         turns = quaternion_from_matrix(matrices[:, :3, :3]).tolist()
         places = matrices[:, :3, 3].tolist()
@@ -185,7 +185,7 @@ class PosableRobot:
         }
 
     def frame_of(self, state: JointPositions) -> str:
-        """Return the frame that the links' poses are relative to."""
+        """Return the frame to which the link poses of a state are relative."""
         return state.frame or self.root
 
     def markers(self, state: JointPositions, look: Look) -> list[MarkerShape]:
@@ -212,7 +212,7 @@ class PosableRobot:
 
 @dataclass(frozen=True, slots=True)
 class _PoseOf:
-    """Gives a transform the attribute names of a pose."""
+    """A transform with the attribute names of a pose."""
 
     position: Any
     orientation: Any
@@ -220,7 +220,7 @@ class _PoseOf:
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """The namespace, name, frame and pose of a marker."""
+    """The namespace, name, frame and pose that a marker gets."""
 
     namespace: str
     name: str

@@ -1,4 +1,4 @@
-"""moveit_rviz_plugin/RobotState."""
+"""The display moveit_rviz_plugin/RobotState."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _HIGHLIGHTS = "Highlights"
 
 
 class RobotStateDisplay(MoveItDisplay):
-    """The robot in the state of the topic's last message, with the link colours that it specifies."""
+    """Shows the robot in the state of the topic's last message, with the link colours that the message specifies."""
 
     CLASS = "moveit_rviz_plugin/RobotState"
     MESSAGE = "moveit_msgs/msg/DisplayRobotState"
@@ -53,7 +53,7 @@ class RobotStateDisplay(MoveItDisplay):
         )
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show a state."""
+        """Show the robot state of a message."""
         self._read(message)
         self.draw()
 
@@ -69,7 +69,7 @@ class RobotStateDisplay(MoveItDisplay):
         super().reset()
 
     def draw(self) -> None:
-        """Draw the state."""
+        """Draw the robot in the last state."""
         message, robot = self.last, self.robot
         if robot is None or message is None or message.hide:
             self.put(_ROBOT, ())

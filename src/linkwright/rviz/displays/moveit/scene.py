@@ -1,4 +1,4 @@
-"""A planning scene that is updated by changes."""
+"""A planning scene, which is updated by messages that contain changes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ OCTOMAP = "<octomap>"
 
 @dataclass(frozen=True, slots=True)
 class SceneObject:
-    """A moveit_msgs/msg/CollisionObject, with the same field names."""
+    """A collision object, with the field names of moveit_msgs/msg/CollisionObject."""
 
     id: str
     frame: str
@@ -44,12 +44,12 @@ class SceneObject:
         return cls(message.id, message.header.frame_id.removeprefix("/"), message.pose, **shapes)
 
     def with_more(self, message: Any) -> SceneObject:
-        """Return the object with the message's shapes added."""
+        """Return a copy of the object with the message's shapes added."""
         shapes: dict[str, Any] = {name: (*getattr(self, name), *getattr(message, name)) for name in _SHAPES}
         return replace(self, **shapes)
 
     def moved(self, message: Any) -> SceneObject:
-        """Return the object moved to the pose in a message."""
+        """Return a copy of the object with the frame and the poses of a message."""
         poses: dict[str, Any] = {name: tuple(found) for name in _POSES if (found := getattr(message, name))}
         return replace(self, frame=message.header.frame_id.removeprefix("/"), pose=message.pose, **poses)
 
@@ -94,10 +94,7 @@ class Scene:
         self._colors: dict[str, Color] = {}
 
     def apply(self, message: Any) -> None:
-        """Apply a moveit_msgs/msg/PlanningScene, except the robot's joints.
-
-        The message is a full scene or a difference.
-        """
+        """Apply a moveit_msgs/msg/PlanningScene, full or as a difference, except for the robot's joints."""
         if not message.is_diff:
             self._objects.clear()
             self._held.clear()
@@ -124,7 +121,7 @@ class Scene:
             self._attach(attached)
 
     def object_markers(self, namespace: str, color: Color) -> list[MarkerShape]:
-        """Return the markers of the unattached objects around the robot."""
+        """Return the markers of the objects that are not attached to the robot."""
         made: list[MarkerShape] = []
         for known_object in self._objects.values():
             chosen = self._colors.get(known_object.id, color)
@@ -134,7 +131,7 @@ class Scene:
     def held_markers(
         self, robot: PosableRobot, state: JointPositions, namespace: str, color: Color
     ) -> list[MarkerShape]:
-        """Return the markers of the attached objects for a state of the robot."""
+        """Return the markers of the attached objects, with the robot in the given state."""
         links = robot.link_poses(state)
         made: list[MarkerShape] = []
         for link, held in self._held.values():

@@ -121,7 +121,7 @@ def _cone(_: Any, sizes: list[float]) -> Form:
 
 
 def _prism(shape: Any, sizes: list[float]) -> Form:
-    """Return a polygon extruded to a height and centred on its plane; its corners are in order."""
+    """Return the polygon extruded to a height and centred on the polygon's plane; its corners are in order."""
     flat = [(point.x, point.y) for point in shape.polygon.points]
     if len(flat) < 3:
         raise BadObjectError(phrase("The polygon of a prism has {corners} corners", corners=len(flat)))

@@ -1,4 +1,4 @@
-"""moveit_rviz_plugin/Trajectory, and a player for motions."""
+"""The display moveit_rviz_plugin/Trajectory, and a player for motions."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ READ_AS = "3x"
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """The states of a robot's motion.
+    """A robot's motion as a sequence of states.
 
     Attributes:
         states: the states; the first one is the start state.
         durations: the time from each state to the next, seconds.
         joints: the joints that move.
-        unknown: joints that the robot does not have.
+        unknown: the joints of the message that the robot does not have.
     """
 
     states: list[JointPositions]
@@ -77,9 +77,9 @@ def read_motion(robot: PosableRobot, message: Any) -> Motion:
 
 
 def _set_root(robot: PosableRobot, state: JointPositions, trajectory: Any, point: Any) -> None:
-    """Set the root from a point of a trajectory_msgs/msg/MultiDOFJointTrajectory.
+    """Set the root's pose from a point of a trajectory_msgs/msg/MultiDOFJointTrajectory.
 
-    Joints that the robot does not have move the root.
+    The root is moved by joints that the robot does not have.
     """
     for name, transform in zip(trajectory.joint_names, point.transforms, strict=False):
         if not robot.has_joint(name):
@@ -91,10 +91,10 @@ def _seconds(duration: Any) -> float:
 
 
 def shown_for(text: str, duration: float) -> float:
-    """Return the number of seconds that a state is shown.
+    """Return how many seconds a state is shown.
 
     Args:
-        text: the State Display Time.
+        text: the value of the property State Display Time.
         duration: the time from this state to the next in the motion, seconds.
     """
     text = text.strip().lower()
@@ -112,7 +112,7 @@ class MotionPlayer:
 
     Args:
         display: the display that has the properties.
-        above: the path of the group that contains these properties.
+        above: the path of the group that contains the properties.
         show: called when the state to draw changes.
     """
 
@@ -128,7 +128,7 @@ class MotionPlayer:
 
     @property
     def is_playing(self) -> bool:
-        """Whether more states follow."""
+        """Whether more states of the motion follow."""
         return self._timer is not None
 
     @property
@@ -137,9 +137,11 @@ class MotionPlayer:
         return self.motion.states[self._place] if self.motion and self.is_playing else None
 
     def play(self, message: Any) -> None:
-        """Play a moveit_msgs/msg/DisplayTrajectory.
+        """Play a moveit_msgs/msg/DisplayTrajectory, immediately or after the current motion.
 
-        It starts after the current motion, unless that is to be interrupted.
+        The new motion starts immediately if no motion is playing, or if the properties let new motions interrupt the
+        current
+        one or make it loop.
         """
         if self.is_playing and not self._flag("Interrupt Display") and not self._flag(_LOOP):
             self._next = message
@@ -148,12 +150,12 @@ class MotionPlayer:
         self._begin()
 
     def property_changed(self, path: Path) -> None:
-        """Play the last motion again if the loop was just switched on."""
+        """Play the last motion again if looping was just switched on."""
         if path == (*self._above, _LOOP) and self._flag(_LOOP) and not self.is_playing:
             self.begin_again()
 
     def begin_again(self) -> None:
-        """Restart the last motion, because the robot was replaced."""
+        """Restart the last motion after the robot was replaced."""
         if self._message is not None:
             self._begin()
 
@@ -253,7 +255,7 @@ class TrajectoryDisplay(MoveItDisplay):
         self._player.play(message)
 
     def changed(self, path: Path) -> None:
-        """Draw again, and restart the motion if the loop was just switched on."""
+        """Redraw, and restart the motion if looping was just switched on."""
         super().changed(path)
         self._player.property_changed(path)
 
@@ -272,6 +274,6 @@ class TrajectoryDisplay(MoveItDisplay):
         super().stop()
 
     def draw(self) -> None:
-        """Draw the current state and the trail."""
+        """Draw the robot in the current state, and the trail."""
         self._player.draw("Planned Path")
         self.drawn()
