@@ -60,23 +60,23 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.range and len(files) > 1:
         hint = phrase("name one file: linkwright format --range 10-20 robot.xacro")
         raise LinkwrightError(Diagnostic("CLI306", phrase("--range needs a single file"), hint=hint))
-    reads_only = arguments.check or arguments.diff
-    changes = [_format_file(file, arguments, reads_only=reads_only) for file in files]
+    dry_run = arguments.check or arguments.diff
+    changes = [_format_file(file, arguments, dry_run=dry_run) for file in files]
     changed, failed = changes.count(True), None in changes
-    _summarise(changed, changes.count(False), reads_only=reads_only)
-    return _CHANGES if failed or (changed and reads_only) else FINE
+    _summarise(changed, changes.count(False), dry_run=dry_run)
+    return _CHANGES if failed or (changed and dry_run) else FINE
 
 
-def _format_file(file: Path, arguments: argparse.Namespace, *, reads_only: bool) -> bool | None:
+def _format_file(file: Path, arguments: argparse.Namespace, *, dry_run: bool) -> bool | None:
     """Format a file, and return whether it changes; None if it is not XML, or cannot be read or written."""
     try:
-        return _is_changed(file, arguments, reads_only=reads_only)
+        return _format_and_report(file, arguments, dry_run=dry_run)
     except LinkwrightError as error:
         print_diagnostics(error.diagnostics, sys.stderr)
         return None
 
 
-def _is_changed(file: Path, arguments: argparse.Namespace, *, reads_only: bool) -> bool:
+def _format_and_report(file: Path, arguments: argparse.Namespace, *, dry_run: bool) -> bool:
     from linkwright.lint.apply import unified, write_text
     from linkwright.xmltree.decoding import decoded
     from linkwright.xmltree.reader import read_bytes
@@ -89,7 +89,7 @@ def _is_changed(file: Path, arguments: argparse.Namespace, *, reads_only: bool) 
         sys.stdout.write(unified(display_path(file), before, after))
     elif arguments.check:
         print(localized(phrase("would format {file}", file=display_path(file))))
-    if not reads_only:
+    if not dry_run:
         write_text(file, after, encoding)
     return True
 
@@ -119,21 +119,22 @@ def _style(file: Path, arguments: argparse.Namespace) -> Style:
     """Return the style of the settings for a file, with that of the command line."""
     from linkwright.lint.configuration import settings_for
 
-    settings, trouble = settings_for(file)
-    print_diagnostics(trouble, sys.stderr)
+    settings, diagnostics = settings_for(file)
+    print_diagnostics(diagnostics, sys.stderr)
     style = settings.style
     return style._replace(indent=arguments.indent or style.indent, width=arguments.width or style.width)
 
 
-def _summarise(changed: int, others: int, *, reads_only: bool) -> None:
+def _summarise(changed: int, others: int, *, dry_run: bool) -> None:
     parts = []
-    if changed and reads_only:
+    if changed and dry_run:
         parts.append(counted("{count} file would be formatted", "{count} files would be formatted", changed))
     elif changed:
         parts.append(counted("{count} file formatted", "{count} files formatted", changed))
     if others:
         parts.append(counted("{count} file left unchanged", "{count} files left unchanged", others))
-    print_message(localized(joined(parts)))
+    if parts:  # not if each file has an error
+        print_message(localized(joined(parts)))
 
 
 def _lines(text: str) -> tuple[int, int]:

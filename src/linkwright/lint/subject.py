@@ -49,8 +49,8 @@ class Subject:
         document: the expanded document; its elements know the file and place where they were written.
         reading: the result of the URDF reader.
         expansion: the expansion, or None for plain URDF.
-        is_whole: whether the description is complete. If not, it contains the parts that could be expanded, and there
-            is no robot.
+        is_whole: whether the description is complete. If not, it contains the parts that could be expanded, without
+            a robot.
     """
 
     def __init__(
