@@ -16,6 +16,7 @@ from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.grammar import PREFIX, XACRO, root_of, rule_at
 from linkwright.packages import PackageFinder
 from linkwright.schema import AttributeRule, ElementRule, describe_attribute, describe_element
+from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
 
 _REFERENCES = {
@@ -155,7 +156,7 @@ def _is_required(parameter: Parameter) -> bool:
 def _parameters(macro: NameDefinition) -> tuple[Parameter, ...]:
     try:
         return tuple(parse_parameters(macro.detail))
-    except Exception:  # noqa: BLE001 - parameters that are being typed may be malformed
+    except Fault:  # they are being typed
         return ()
 
 

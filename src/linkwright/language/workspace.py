@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.language.definitions import NameDefinition, definitions_in
 from linkwright.language.includes import IncludeIndex, real
 from linkwright.lint.checking import Checker, UniqueFindings
 from linkwright.lint.contexts import Contexts
+from linkwright.lint.finding import Finding
 from linkwright.lint.folders import Examined, reported, reported_of_package
 from linkwright.lint.targets import DESCRIPTIONS, Targets
 from linkwright.packages import PackageFinder, enclosing_package
@@ -32,6 +34,16 @@ _CALLERS = (
 """Files that decide how descriptions are checked: what calls them, where packages are, and settings."""
 
 
+class _Result(NamedTuple):
+    """The findings about a subject, and the texts of the open files with which it was checked."""
+
+    findings: tuple[Diagnostic, ...]
+    texts: Mapping[Path, str]
+
+
+_NOTHING = _Result((), {})
+
+
 class Workspace:
     """The files below some folders, with the open texts of an editor.
 
@@ -50,7 +62,7 @@ class Workspace:
         self.index = IncludeIndex(self._folders)
         self._checker = Checker(folders=self._folders)
         self._names: dict[Path, tuple[int, tuple[NameDefinition, ...]]] = {}
-        self._results: dict[Path, tuple[Diagnostic, ...]] = {}
+        self._results: dict[Path, _Result] = {}
 
     def file_saved(self, file: Path) -> None:
         """Note that a file on the disk was changed, made or removed."""
@@ -93,8 +105,13 @@ class Workspace:
             file: the changed file.
             texts: the texts of the open files.
         """
+        is_description = file.name.endswith(DESCRIPTIONS)
+        if (is_description and file not in texts and file.exists() != (file in self.index.files)) or (
+            file.name == MANIFEST and file.exists() != (file.parent in self.index.packages)
+        ):
+            self.index.refresh()
         package = enclosing_package(file.parent)
-        found = self.index.entries(file, texts) if file.name.endswith(DESCRIPTIONS) else []
+        found = self.index.entries(file, texts) if is_description else []
         return [*found, *([] if package is None else [real(package[1])])]
 
     def check(
@@ -107,19 +124,27 @@ class Workspace:
             texts: the texts of the open files.
             changed: files that are included in the result even if there is no finding about them.
         """
-        before = self._results.get(subject, ())
-        found = self._checked(subject, texts)
-        self._results[subject] = found
+        before = self._results.pop(subject, _NOTHING).findings
+        found = self._checked(subject, texts) if subject in texts or subject.exists() else ()
+        if found:
+            self._results[subject] = _Result(found, texts)
         return self._of_files({_file(diagnostic, subject) for diagnostic in (*before, *found)} | {*changed})
 
-    def forget(self, subject: Path) -> dict[Path, list[Diagnostic]]:
-        """Drop the findings about a subject that no longer exists, and return those that remain in its files."""
-        before = self._results.pop(subject, ())
-        return self._of_files({_file(diagnostic, subject) for diagnostic in before})
+    def fixable(self, file: Path, texts: Mapping[Path, str]) -> list[Finding]:
+        """Return the findings about a file that have a fix, if the texts that the fix edits are those of the check.
 
-    def findings(self, file: Path) -> list[Diagnostic]:
-        """Return the findings about a file of the checks so far, without duplicates."""
-        return self._of_files({file})[file]
+        Args:
+            file: the file.
+            texts: the texts of the open files.
+        """
+        found = UniqueFindings()
+        for subject, result in self._results.items():
+            for finding in result.findings:
+                if isinstance(finding, Finding) and finding.fix is not None and _file(finding, subject) == file:
+                    edited = {real(edit.source_file) for edit in finding.fix.edits}
+                    if all(result.texts.get(other) == texts.get(other) for other in edited):
+                        found.add([finding])
+        return [finding for finding in found.all() if isinstance(finding, Finding)]
 
     def _checked(self, subject: Path, texts: Mapping[Path, str]) -> tuple[Diagnostic, ...]:
         overlay = Overlay({str(path): text for path, text in texts.items()})
@@ -135,8 +160,8 @@ class Workspace:
     def _of_files(self, files: set[Path]) -> dict[Path, list[Diagnostic]]:
         """Return the findings about some files, of all subjects, without duplicates."""
         found = {file: UniqueFindings() for file in files}
-        for subject, diagnostics in self._results.items():
-            for diagnostic in diagnostics:
+        for subject, result in self._results.items():
+            for diagnostic in result.findings:
                 file = _file(diagnostic, subject)
                 if file in found:
                     found[file].add([diagnostic])

@@ -9,7 +9,7 @@ from lsprotocol import types
 
 from linkwright.diagnostics import Diagnostic, Severity, Span
 from linkwright.diagnostics.translation import localized
-from linkwright.lsp.positions import TextPositions
+from linkwright.lsp.positions import TextOf
 
 _SEVERITIES = {
     Severity.ERROR: types.DiagnosticSeverity.Error,
@@ -19,12 +19,9 @@ _SEVERITIES = {
 _UNNECESSARY = ("unused", "unreachable")
 _START = types.Range(types.Position(0, 0), types.Position(0, 0))
 
-Positions = Callable[[Path], "TextPositions | None"]
-"""Returns the positions of a file's text; None if it cannot be read."""
-
 
 def as_diagnostics(
-    findings: Iterable[Diagnostic], positions: Positions, uri: Callable[[Path], str]
+    findings: Iterable[Diagnostic], positions: TextOf, uri: Callable[[Path], str]
 ) -> list[types.Diagnostic]:
     """Convert the findings about a file.
 
@@ -36,7 +33,7 @@ def as_diagnostics(
     return [_diagnostic(finding, positions, uri) for finding in findings]
 
 
-def _diagnostic(finding: Diagnostic, positions: Positions, uri: Callable[[Path], str]) -> types.Diagnostic:
+def _diagnostic(finding: Diagnostic, positions: TextOf, uri: Callable[[Path], str]) -> types.Diagnostic:
     hint = f"\n{localized(finding.hint)}" if finding.hint else ""
     notes = [f"\n{localized(note.message)}" for note in finding.notes if note.span is None]
     related = [
@@ -57,7 +54,7 @@ def _diagnostic(finding: Diagnostic, positions: Positions, uri: Callable[[Path],
     )
 
 
-def _range(span: Span, positions: Positions) -> types.Range:
+def _range(span: Span, positions: TextOf) -> types.Range:
     found = positions(Path(span.file))
     return _START if found is None else found.range_of(span)
 

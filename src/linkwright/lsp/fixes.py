@@ -1,40 +1,37 @@
-"""Code actions: the fixes of findings, and comments that suppress them."""
+"""Code actions: the fixes of findings."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from lsprotocol import types
 
-from linkwright.diagnostics import Diagnostic, phrase
+from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Fix
-from linkwright.lsp.positions import TextPositions
-
-Positions = Callable[[Path], "TextPositions | None"]
+from linkwright.lsp.positions import TextOf
 
 
 def actions(
-    findings: Iterable[Diagnostic],
+    findings: Sequence[Finding],
     wanted: types.Range,
-    positions: Positions,
+    positions: TextOf,
     uri: Callable[[Path], str],
     reported: Iterable[types.Diagnostic],
 ) -> list[types.CodeAction]:
     """Return the fixes of the findings about a file that touch a range, and a fix of all safe ones.
 
     Args:
-        findings: the findings about the file.
+        findings: the findings about the file that have a fix.
         wanted: the range that the editor asks about.
         positions: the texts of files.
         uri: returns the URI that the editor has for a file.
         reported: the diagnostics that the editor shows there.
     """
-    fixable = [finding for finding in findings if isinstance(finding, Finding) and finding.fix is not None]
     found = []
-    for finding in fixable:
+    for finding in findings:
         own = positions(Path(finding.span.file)) if finding.span is not None else None
         if own is None or finding.span is None or finding.fix is None:
             continue
@@ -50,7 +47,7 @@ def actions(
                     title, types.CodeActionKind.QuickFix, about or None, is_preferred=finding.fix.safe, edit=edit
                 )
             )
-    safe = [finding.fix for finding in fixable if finding.fix is not None and finding.fix.safe]
+    safe = [finding.fix for finding in findings if finding.fix is not None and finding.fix.safe]
     edit = _edit(safe, positions, uri)
     if edit is not None:
         title = localized(phrase("fix everything that is safe to fix in this file"))
@@ -58,7 +55,7 @@ def actions(
     return found
 
 
-def _edit(fixes: Iterable[Fix], positions: Positions, uri: Callable[[Path], str]) -> types.WorkspaceEdit | None:
+def _edit(fixes: Iterable[Fix], positions: TextOf, uri: Callable[[Path], str]) -> types.WorkspaceEdit | None:
     """Return the edits of fixes that do not overlap earlier ones; None if there is none."""
     changed: dict[str, list[tuple[int, int, types.TextEdit]]] = {}
     for fix in fixes:

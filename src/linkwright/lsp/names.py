@@ -13,7 +13,7 @@ from linkwright.language.completion import Completion, ItemKind, complete
 from linkwright.language.definitions import NameDefinition
 from linkwright.language.hover import definitions_at, explain_at
 from linkwright.language.workspace import Workspace
-from linkwright.lsp.positions import TextPositions
+from linkwright.lsp.positions import TextOf, TextPositions
 
 _KINDS = {
     ItemKind.ELEMENT: types.CompletionItemKind.Class,
@@ -79,7 +79,7 @@ def definitions(
     names: Sequence[NameDefinition],
     positions: TextPositions,
     place: types.Position,
-    text_of: Callable[[Path], TextPositions | None],
+    text_of: TextOf,
     uri: Callable[[Path], str],
 ) -> list[types.Location]:
     """Return where the name at a place is defined."""
@@ -88,7 +88,7 @@ def definitions(
 
 
 def _locations(
-    names: Iterable[NameDefinition], text_of: Callable[[Path], TextPositions | None], uri: Callable[[Path], str]
+    names: Iterable[NameDefinition], text_of: TextOf, uri: Callable[[Path], str]
 ) -> Iterable[types.Location]:
     for name in names:
         own = text_of(name.file)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
+
 from lsprotocol import types
 
 from linkwright.diagnostics import SourceText, Span
@@ -57,3 +60,7 @@ class TextPositions:
         before = self._source.line(line)[: column - 1]
         units = len(before) if before.isascii() else len(before.encode(self._codec)) // self._bytes
         return types.Position(line - 1, units)
+
+
+TextOf = Callable[[Path], TextPositions | None]
+"""Returns the positions of a file's text; None if it cannot be read."""

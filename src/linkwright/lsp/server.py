@@ -98,7 +98,7 @@ class LinkwrightServer(LanguageServer):
         if self.project is None:
             return []
         await self._is_indexed.wait()
-        return self.project.names(real(path), self._texts())
+        return self.project.names(real(path), self.texts())
 
     def positions(self, path: Path) -> TextPositions | None:
         """Return the positions of a file's text, that of the editor if it is open; None if it cannot be read."""
@@ -124,7 +124,7 @@ class LinkwrightServer(LanguageServer):
         file = real(path)
         return self._uris.get(file) or file.as_uri()
 
-    def _texts(self) -> dict[Path, str]:
+    def texts(self) -> dict[Path, str]:
         """Return the texts of the open files."""
         found = {path: self.workspace.text_documents.get(uri) for path, uri in self._uris.items()}
         return {path: document.source for path, document in found.items() if document is not None}
@@ -141,7 +141,7 @@ class LinkwrightServer(LanguageServer):
                 await self._has_changes.wait()
             self._has_changes.clear()
             changed, self._changed = self._changed, {}
-            texts = self._texts()
+            texts = self.texts()
             for file in changed:
                 subjects = await self._attempt(partial(project.subjects, file, texts), file) or []
                 pending = {subject: pending.get(subject, set()) for subject in (*subjects, *pending)}
@@ -295,5 +295,5 @@ def _add_requests(server: LinkwrightServer) -> None:
         path, positions = server.text(asked.text_document)
         if positions is None or server.project is None:
             return None
-        found = server.project.findings(real(path))
+        found = server.project.fixable(real(path), server.texts())
         return fixes.actions(found, asked.range, server.positions, server.uri_of, asked.context.diagnostics)

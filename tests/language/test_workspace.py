@@ -1,0 +1,73 @@
+"""The files of an editor: their findings, as files and unsaved texts change."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.language.includes import real
+from linkwright.language.workspace import Workspace
+
+PARTS = (
+    '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="m"><link name="b"/></xacro:macro></robot>'
+)
+MAIN = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:include filename="parts.xacro"/>
+  <xacro:m/>
+</robot>"""
+LONG_AXIS = """<robot name="r">
+  <link name="a"/><link name="b"/>
+  <joint name="j" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 2"/></joint>
+</robot>"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "linkwright.toml").write_text('select = ["LW221"]\n')
+    return real(tmp_path)
+
+
+@pytest.fixture
+def workspace(folder: Path) -> Workspace:
+    found = Workspace([folder])
+    found.index.refresh()
+    return found
+
+
+def codes(workspace: Workspace, file: Path, texts=None) -> dict[str, list[str]]:
+    """Check what a change of a file concerns, and return the codes of the findings by file."""
+    texts = texts or {}
+    found = {}
+    for subject in workspace.subjects(file, texts):
+        found |= workspace.check(subject, texts, [file])
+    return {path.name: [finding.code for finding in findings] for path, findings in found.items()}
+
+
+def test_a_fix_is_offered_only_for_the_text_that_was_checked(workspace, folder):
+    file = folder / "r.urdf"
+    texts = {file: LONG_AXIS}
+    assert codes(workspace, file, texts) == {"r.urdf": ["LW221"]}
+    (finding,) = workspace.fixable(file, texts)
+    (edit,) = finding.fix.edits
+    assert LONG_AXIS[edit.start : edit.end] == "0 0 2"
+    assert workspace.fixable(file, {file: "<!-- typed -->\n" + LONG_AXIS}) == []
+    assert workspace.fixable(file, {}) == []
+
+
+def test_findings_go_with_the_file(workspace, folder):
+    file = folder / "r.urdf"
+    file.write_text(LONG_AXIS)
+    assert codes(workspace, file) == {"r.urdf": ["LW221"]}
+    file.unlink()
+    workspace.file_saved(file)
+    assert codes(workspace, file) == {"r.urdf": []}
+
+
+def test_a_file_that_is_made_later_is_checked_with_what_includes_it(workspace, folder):
+    main, parts = folder / "r.urdf.xacro", folder / "parts.xacro"
+    main.write_text(MAIN)
+    assert "XAC506" in codes(workspace, main)["r.urdf.xacro"] or "XML101" in codes(workspace, main)["r.urdf.xacro"]
+    parts.write_text(PARTS)
+    assert workspace.subjects(parts, {}) == [main]
+    assert codes(workspace, parts) == {"r.urdf.xacro": [], "parts.xacro": []}
