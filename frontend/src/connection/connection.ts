@@ -10,21 +10,25 @@ import type { Tokens } from "./tokens";
 import { unpackTransforms, type Transforms } from "./transforms";
 
 /**
- * `ended`: the program said goodbye; one with the same token may still return. `refused`: the page has no token, or
- * there is a program that does not know it. `outdated`: a reload did not help.
+ * The state of the connection. `ended`: the program has shut down; one with the same token may start again. `refused`:
+ * the page has no token, or the program does not know its token. `outdated`: the page is of another version than the
+ * server, and a reload did not help.
  */
 export type ConnectionState = "connecting" | "connected" | "reconnecting" | "ended" | "refused" | "outdated";
 
 const FIRST_RETRY_MS = 250;
-/** Less than the server waits for pages that were open before it was restarted. */
+/** Shorter than the time that a restarted server waits for the pages that were open before. */
 const LONGEST_RETRY_MS = 2000;
 const GOING_AWAY = 1001;
 const UNAUTHORIZED = 401;
-/** Messages of this length, in bytes or characters, are acknowledged: fewer than the server counts on. */
+/**
+ * Messages of at least this length, in bytes or characters, are acknowledged. The server relies on acknowledgements of
+ * longer ones only.
+ */
 const LARGE = 1024;
 const RELOADED_KEY = "linkwright.reloaded-for-protocol";
 
-/** The WebSocket to the server, opened again with growing pauses whenever it is lost. */
+/** The WebSocket to the server, reopened after growing pauses whenever it is lost. */
 export class Connection {
   readonly message = new Signal<ServerMessage>();
   readonly transforms = new Signal<Transforms>();
@@ -36,19 +40,21 @@ export class Connection {
   private retryMs = FIRST_RETRY_MS;
   private receivedCount = 0;
   private shown: string | null = null;
-  /** The token with which this page was let in. */
+  /** The token that the server accepted from this page. */
   private accepted: string | null = null;
   private attempts = 0;
   private retryTimer: ReturnType<typeof setTimeout> | undefined;
   private current: ConnectionState = "connecting";
 
-  /** `url` is the address of the server's WebSocket, without the token; `tokens` is null without a server that asks for one. */
+  /**
+   * `url` is the address of the server's WebSocket, without the token; `tokens` is null where the server asks for none.
+   */
   constructor(
     private readonly url: string,
     readonly tokens: Tokens | null = null,
   ) {}
 
-  /** Calls `listener` with every message of a type until the returned function is called. */
+  /** Calls `listener` with every message of a type, until the returned function is called. */
   on<T extends ServerMessage["type"]>(
     type: T,
     listener: (message: Extract<ServerMessage, { type: T }>) => void,
@@ -81,12 +87,15 @@ export class Connection {
     else this.connect();
   }
 
-  /** Makes the next attempt now. */
+  /** Retries immediately instead of waiting for the timer. */
   hurry(): void {
     if (this.socket === null && this.attempts > 0 && this.current !== "connected" && this.current !== "outdated") this.open();
   }
 
-  /** Shows the token to the program that this page knows, and to no other program at its address. */
+  /**
+   * Sends the token only to a program that proves it knows the token already; another program may listen at the address
+   * now.
+   */
   private async comeBack(token: string, attempt: number): Promise<void> {
     const proof = await askForProof(this.url, token);
     if (attempt !== this.attempts) return;
@@ -107,7 +116,7 @@ export class Connection {
     this.receivedCount = 0;
   }
 
-  /** Shows the server another token, now. */
+  /** Connects with another token immediately. */
   show(token: string): void {
     this.tokens?.take(token);
     this.accepted = null;
@@ -115,12 +124,12 @@ export class Connection {
     this.open();
   }
 
-  /** Sends now or not at all: the user's actions without a server are not replayed later. */
+  /** Sends a message, or drops it while disconnected: actions of the user must not be replayed later. */
   send(message: PageMessage): void {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
 
-  /** Sends a binary frame, likewise. */
+  /** Sends a binary frame, or drops it while disconnected. */
   sendBytes(frame: ArrayBuffer): void {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(frame);
   }
@@ -128,7 +137,7 @@ export class Connection {
   private receive(data: string | ArrayBuffer): void {
     this.receivedCount += 1;
     const length = typeof data === "string" ? data.length : data.byteLength;
-    // Before it is worked on: the server measures the line with it.
+    // Acknowledge before the work: the server measures the throughput of the connection with it.
     if (this.receivedCount === 1 || length >= LARGE) this.send({ type: "received", count: this.receivedCount });
     if (data instanceof ArrayBuffer) {
       this.receiveBytes(data);
@@ -184,7 +193,7 @@ export class Connection {
     return url;
   }
 
-  /** A socket that does not open gives no reason; an ordinary request for it does. */
+  /** Finds out why the socket did not open: its close event gives no reason, but an ordinary request does. */
   private async askWhy(): Promise<void> {
     const url = this.address;
     url.protocol = url.protocol === "wss:" ? "https:" : "http:";
@@ -197,7 +206,7 @@ export class Connection {
     }
   }
 
-  /** The server was replaced by another version: its own page is one reload away. */
+  /** Reloads the page once: the server now has another version, and serves the page that belongs to it. */
   private outdated(): void {
     const socket = this.socket;
     this.become("outdated");
@@ -216,8 +225,8 @@ export class Connection {
 }
 
 /**
- * The address of the WebSocket for a page at `page`; `own` is the name of its own displays, `language` that of its
- * texts.
+ * Returns the address of the WebSocket for a page at `page`. `own` is the key of the page's own displays, `language`
+ * the language of the server's texts.
  */
 export function socketUrl(page: string, own: string | null = null, language: string | null = null): string {
   const url = new URL("ws", page);

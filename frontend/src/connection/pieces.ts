@@ -7,7 +7,7 @@ export class Pieces {
   private number = 0;
   private whole = new Uint8Array();
 
-  /** Takes a piece; returns the frame that it completes, or null while pieces are missing. */
+  /** Adds a piece; returns the frame that it completes, or null while pieces are missing. */
   take(piece: ArrayBuffer): ArrayBuffer | null {
     const header = new DataView(piece);
     const [number, offset, length] = [4, 8, 12].map((at) => header.getUint32(at, true)) as [number, number, number];

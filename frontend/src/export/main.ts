@@ -25,7 +25,7 @@ import { readRecording } from "./recording";
 import { Sidebar } from "./sidebar";
 import { lookFrom } from "./views";
 
-/** Images of displays have panels of their own; an exported page has none. */
+/** An exported page has no panels for the images of displays. */
 const NO_PANELS = { offer: () => undefined, withdraw: () => undefined, retitle: () => undefined };
 
 function start(app: HTMLElement, recorded: HTMLElement): void {

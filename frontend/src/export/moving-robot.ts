@@ -6,7 +6,9 @@ type Positions = Readonly<Record<string, number>>;
 
 const MOST_FOLLOWED = 64;
 
-/** A frame below another: its place in the parent, and the joint that moves it, at the position of its leading joint. */
+/**
+ * A frame below another: its fixed pose in the parent, or the joint that moves it, and the joint that leads that joint.
+ */
 interface Frame {
   readonly parent: number;
   readonly fixed: Matrix4;
@@ -14,15 +16,18 @@ interface Frame {
   readonly leader: string;
 }
 
-/** A robot whose joints follow those of another: by the name of each the name of that. */
+/**
+ * A robot whose joints follow joints of another robot; `joints` maps its joint names to the names of the leading
+ * joints.
+ */
 export interface FollowingRobot {
   readonly robot: RobotScene;
   readonly joints: Readonly<Record<string, string>>;
 }
 
 /**
- * The frames of an exported page. Those of the robot follow its joints; all others stay where they were in their
- * parents.
+ * The frames of an exported page. The frames of the robot follow its joints; all others keep their pose in their
+ * parent.
  */
 export class MovingRobot {
   private readonly frames: Frame[];
@@ -49,12 +54,12 @@ export class MovingRobot {
       return { parent, fixed, joint, leader: found?.leader ?? "" };
     });
     this.order = parentsFirst(this.frames);
-    // The fixed frame stays where it is, wherever in the tree it is: of the frames with a pose, the one at the origin.
+    // The fixed frame must not move, wherever it is in the tree. It is the frame whose recorded pose is the identity.
     const row = Math.max(0, poses.findIndex((pose) => pose !== null && isIdentity(pose)));
     this.anchor = { row, pose: poses[row]?.clone() ?? new Matrix4() };
   }
 
-  /** The transforms of all frames for positions of joints, rad or m. */
+  /** Returns the transforms of all frames for joint positions, rad or m. */
   transforms(positions: Positions): Transforms {
     const poses = this.frames.map(() => new Matrix4());
     for (const row of this.order) {
@@ -74,7 +79,7 @@ export class MovingRobot {
     return { revision: this.table.revision, stamp: 0, poses: numbers, ages: new Float32Array(poses.length) };
   }
 
-  /** The position of a joint, be it one that mimics another. */
+  /** Returns the position of a joint, also of one that mimics another. */
   position(name: string, positions: Positions): number {
     let [factor, offset, at] = [1, 0, name];
     for (let i = 0; i < MOST_FOLLOWED; i++) {
@@ -88,7 +93,7 @@ export class MovingRobot {
   }
 }
 
-/** The frames that joints of a robot move, each with its joint, the frame above it and the joint that leads. */
+/** Returns the frames that joints of a robot move, each with its joint, the frame above it and the leading joint. */
 function ledFrames({ robot, joints }: FollowingRobot): [string, { joint: JointScene; above: string | undefined; leader: string }][] {
   const frameOf = new Map(robot.links.map(({ name, frame }) => [name, frame]));
   return robot.joints.flatMap((joint) => {

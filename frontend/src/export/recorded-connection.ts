@@ -6,10 +6,10 @@ import { bytesOf, type Recording } from "./recording";
 
 const GRID = "rviz_default_plugins/Grid";
 const TF = "rviz_default_plugins/TF";
-/** Length of an axis of TF at Marker Scale 1, m. */
+/** Length of TF's axes at Marker Scale 1, m. */
 const AXIS = 0.2;
 
-/** Takes the server's place in an exported page: sends the recorded messages, and moves the robot's joints. */
+/** Replaces the server in an exported page: emits the recorded messages, and moves the robot's joints. */
 export class RecordedConnection extends Connection {
   private controls: readonly JointControl[] = [];
   private robot: MovingRobot | null = null;
@@ -34,7 +34,7 @@ export class RecordedConnection extends Connection {
     this.moved();
   }
 
-  /** Moves joints; other requests of the page need a server, and the page shows its own edits by itself. */
+  /** Handles requests that move joints. Others would need a server; the page shows its own edits without one. */
   override send(message: PageMessage): void {
     const { controls } = this;
     if (message.type === "set_joint") this.move({ [message.name]: message.position });
@@ -44,13 +44,16 @@ export class RecordedConnection extends Connection {
     else if (message.type === "robot_measured") this.fitSizes(message);
   }
 
-  /** Puts the joints where they were when the robot was exported. */
+  /** Moves the joints to their positions at the time of the export. */
   reset(): void {
     this.positions = { ...this.start };
     this.moved();
   }
 
-  /** Puts the grid on the ground below the robot, in cells of its size, with axes that suit it, as the server of `view` does by default. */
+  /**
+   * Places the grid on the ground below the robot, and fits its cells and TF's axes to the robot's size, as the server
+   * of `view` does by default.
+   */
   private fitSizes({ diagonal, ground }: RobotMeasured): void {
     const { messages, awaits_size, spacing } = this.recording;
     const displays = messages.find((message) => message.type === "tree")?.displays ?? [];
@@ -92,12 +95,15 @@ export class RecordedConnection extends Connection {
   }
 }
 
-/** The side of a cell for a robot of so large a box, m: `ModelSize.cell` of `viewer/config/model_size.py`. */
+/**
+ * Returns the side of a grid cell for a robot with a bounding box of this diagonal, m: `ModelSize.cell` of
+ * `viewer/config/model_size.py`.
+ */
 function cellFor(diagonal: number): number {
   return 10 ** Math.floor(Math.log10(diagonal * 1.5));
 }
 
-/** The Marker Scale of TF at which axes are seen beside the links: `ModelSize.marker_scale` of the server. */
+/** Returns TF's Marker Scale with which axes can be told from the links: `ModelSize.marker_scale` of the server. */
 function markerScaleFor(diagonal: number, spacing: number): number {
   const axis = Math.min(Math.max(spacing / 2, diagonal / 40), diagonal / 10);
   return Number((axis / AXIS).toPrecision(2));

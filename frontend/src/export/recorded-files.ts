@@ -10,7 +10,7 @@ const TYPES: Readonly<Record<string, string>> = {
   webp: "image/webp",
 };
 
-/** Meshes and textures that are part of the page. */
+/** The meshes and textures that are embedded in the page. */
 export class RecordedFiles implements MeshFiles {
   private readonly blobs = new Map<string, string>();
 
@@ -37,7 +37,7 @@ export class RecordedFiles implements MeshFiles {
   }
 }
 
-/** `/mesh/...` of an address, wherever the page itself was opened from. */
+/** Returns the `/mesh/...` part of an address, which does not depend on where the page was opened. */
 function pathOf(url: string): string {
   const [path = ""] = url.split("?");
   const at = path.indexOf("/mesh/");

@@ -16,12 +16,12 @@ const SIDES: readonly Side[] = ["iso", "front", "left", "top"];
 /** The actions of the sidebar. */
 export interface SidebarActions {
   lookFrom(side: Side): void;
-  /** Looks at the whole selection. */
+  /** Moves the camera so that the whole selection is visible. */
   fit(): void;
   reset(): void;
 }
 
-/** Beside the robot of an exported page: its displays, views, and a slider for each joint. */
+/** The column beside the robot of an exported page: displays, views, and a slider for each joint. */
 export class Sidebar {
   readonly element: HTMLElement;
 
@@ -59,7 +59,7 @@ export class Sidebar {
     );
   }
 
-  /** The differences of two descriptions, where the file has two. */
+  /** Returns the differences of the two descriptions, if the file has two. */
   private comparison(): HTMLElement | null {
     const { comparison } = this.session;
     if (comparison.compared === null) return null;
