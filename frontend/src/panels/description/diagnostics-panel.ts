@@ -8,7 +8,7 @@ import { troubleText } from "../displays/display-items";
 import type { Panel } from "../panel";
 import { placeText, shortPath } from "../place";
 
-/** The findings on the description, with the lines they point to, and why displays show nothing. */
+/** The findings on the description with the lines they point to, and the reasons why displays show nothing. */
 export class DiagnosticsPanel implements Panel {
   readonly id = "diagnostics";
   readonly icon = "warn";
@@ -51,7 +51,7 @@ export class DiagnosticsPanel implements Panel {
     this.cards = next;
     const elements = [...next.values()].map((each) => each.element);
     const before = [...this.displays.children];
-    // What is there stays the same element, whatever it says: it may be about to be clicked.
+    // Keep the element of a display whatever its text: the user may be about to click it.
     if (elements.length !== before.length || elements.some((each, index) => each !== before[index])) this.displays.replaceChildren(...elements);
     this.showNone();
   }
@@ -66,7 +66,7 @@ export class DiagnosticsPanel implements Panel {
   }
 }
 
-/** The problems of a display. */
+/** The card with the problems of a display. */
 class TroubleCard {
   readonly element = h("article");
   private readonly sign = h("span");
@@ -120,14 +120,14 @@ function card(item: DiagnosticItem, show: Show): HTMLElement {
   );
 }
 
-/** A place that is shown in the Source panel when it is clicked. */
+/** Returns a button that shows a place in the Source panel. */
 function placeButton({ file, line, column }: Pick<DiagnosticNote, "file" | "line" | "column">, show: Show): HTMLElement | null {
   if (file === null) return null;
   const text = placeText(shortPath(file), line, column);
   return button(placeText(file, line, column), () => show(file, line ?? 1), "place", icon("file"), text);
 }
 
-/** The source line with the part in question marked. */
+/** Returns the source line of a finding, with the part in question marked. */
 function excerpt(item: DiagnosticItem): HTMLElement | null {
   if (item.excerpt === "") return null;
   const text = item.excerpt.trimStart();

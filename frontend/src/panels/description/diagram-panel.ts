@@ -13,11 +13,11 @@ import { currentModel } from "./current-model";
 const SVG = "http://www.w3.org/2000/svg";
 const FONT = "12px Inter, 'Segoe UI', 'Noto Sans', sans-serif";
 const LINE_PX = 13;
-/** Of the smallest texts, the origins. */
+/** Font size of the smallest texts, the origins. */
 const TEXT_PX = 11;
 const FLASH_MS = 1600;
 
-/** The structure of the robot, as urdf_to_graphviz draws it. */
+/** The structure of the robot, drawn as by urdf_to_graphviz. */
 export class DiagramPanel implements Panel {
   readonly id = "diagram";
   readonly icon = "diagram";
@@ -65,7 +65,7 @@ export class DiagramPanel implements Panel {
     this.update();
   }
 
-  /** For tests. */
+  /** Returns the counts and sizes that tests check. */
   inspect(): object {
     const { nodes = [], width = 0, height = 0 } = this.diagram ?? {};
     return {
@@ -145,7 +145,7 @@ export class DiagramPanel implements Panel {
     if (this.diagram && this.canvas.clientWidth > 0) this.panZoom.show(this.diagram.width, this.diagram.height);
   }
 
-  /** Brings the selected element, or else the root, into sight at a legible size. */
+  /** Scrolls to the selected element, or else the root, at a legible size. */
   private place(): void {
     const { diagram } = this;
     if (!diagram || this.canvas.clientWidth === 0) return;
@@ -164,7 +164,7 @@ export class DiagramPanel implements Panel {
   }
 
   private flash(links: readonly string[], joints: readonly string[]): void {
-    // The new image comes with the answer to the question that the same change made.
+    // Wait for the new diagram, which arrives after the request that the same change caused.
     setTimeout(() => {
       const names = [...links.map((name) => `link ${name}`), ...joints.map((name) => `joint ${name}`)];
       for (const node of names.flatMap((name) => this.nodes.get(name) ?? [])) {
@@ -179,7 +179,7 @@ function key({ kind, name }: ElementName): string {
   return `${kind} ${name}`;
 }
 
-/** The path from the lower end of one node to the upper end of the other. */
+/** Returns the path from the lower end of one node to the upper end of another. */
 function edge(from: DiagramNode, to: DiagramNode): string {
   const [top, bottom] = [from.y + from.height / 2, to.y - to.height / 2];
   const middle = Math.min(14, (bottom - top) / 2);
@@ -205,7 +205,7 @@ function svg<K extends keyof SVGElementTagNameMap>(
   return element;
 }
 
-/** Widths of texts in the diagram's font, each measured once. */
+/** Returns a function that measures texts in the diagram's font, each text once. */
 function textMeasure(): (text: string) => number {
   const context = document.createElement("canvas").getContext("2d");
   const known = new Map<string, number>();

@@ -72,7 +72,7 @@ export class LinksPanel implements Panel {
     this.rows.refresh(this.shown.length);
   }
 
-  /** Another element is the one: its row is opened and shown. */
+  /** Unfolds and reveals the row of the newly selected element. */
   private focused(): void {
     const link = this.focusedLink();
     if (this.model && link !== undefined && this.search.value === "") this.tree.open(this.model, link);
@@ -171,7 +171,7 @@ export class LinksPanel implements Panel {
     else if (event.key === "ArrowLeft" && row?.inner && !row.folded) this.toggle(index);
     else if (event.key === "ArrowLeft" && row?.joint) go(this.shown.findIndex((each) => each.link.name === row.joint?.parent));
     else if (event.key === "Enter" && row?.joint && this.model) {
-      // From a link to its joint, and back.
+      // Switch from a link to its joint, or back.
       const kind = this.session.focus.current?.kind === "joint" ? "link" : "joint";
       const name = kind === "link" ? row.link.name : row.joint.name;
       this.session.focus.select({ display: this.model.display, kind, name });

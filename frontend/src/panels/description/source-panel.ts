@@ -11,18 +11,18 @@ import { placeText, shortPath, shortPlace } from "../place";
 import { currentModel } from "./current-model";
 import { SourceView, type Highlight } from "./source-view";
 
-/** A place to show that is none of an element's: a diagnostic's, a macro call's. */
+/** A place to show that is not the place of an element, such as that of a diagnostic or macro call. */
 interface Spot {
   readonly file: string;
   readonly line: number;
   readonly look: Highlight["look"];
-  /** The display whose description the file belongs to, where that is another one than the panels are about. */
+  /** The display whose description the file belongs to, if that is not the one that the panels show. */
   readonly display: string | undefined;
-  /** The file's name for readers, where that is not its path, such as one of a commit. */
+  /** The file's name for users, if that is not its path: a file of a commit, for example. */
   readonly name: string | undefined;
 }
 
-/** The files that the description is written in, and beside them what they expand to; the selected link or joint is marked in both. */
+/** The files of the description, and next to them the expanded text. The selected link or joint is marked in both. */
 export class SourcePanel implements Panel {
   readonly id = "source";
   readonly icon = "code";
@@ -34,12 +34,12 @@ export class SourcePanel implements Panel {
   private readonly notice = h("p", { class: "empty" });
   private readonly empty = h("p", { class: "empty" }, strings.description.waiting);
   private readonly panes: HTMLElement;
-  /** The file that is shown. */
+  /** The file shown. */
   private file = "";
   private spot: Spot | null = null;
   private model: DescriptionModel | undefined;
   private visible = false;
-  /** Places to scroll to once their text is here. */
+  /** The lines to scroll to once their text has arrived. */
   private wanted: { expanded: number | null; origin: number | null } = { expanded: null, origin: null };
 
   constructor(private readonly session: Session) {
@@ -91,7 +91,7 @@ export class SourcePanel implements Panel {
     this.update();
   }
 
-  /** For tests: what is shown and marked. */
+  /** Returns what is shown and marked, for tests. */
   inspect(): object {
     const marks = (view: SourceView): object => view.highlighted.map(({ from, to, look }) => ({ from, to, look }));
     return {
@@ -100,7 +100,7 @@ export class SourcePanel implements Panel {
     };
   }
 
-  /** Another element is the one, or its place is another. */
+  /** Follows the selection, or a new place of the selected element. */
   private focused(): void {
     this.model = currentModel(this.session);
     const { expanded, origin } = this.places();
@@ -113,7 +113,10 @@ export class SourcePanel implements Panel {
     this.update();
   }
 
-  /** The panel is seen again, or the description is another; a place that was asked for stays until another element is the one. */
+  /**
+   * Updates when the panel becomes visible or the description changes. A place that was asked for stays until the
+   * selection changes.
+   */
   private renewed(): void {
     if (this.spot === null || this.spot.file !== this.file) this.focused();
     else this.update();
@@ -163,7 +166,7 @@ export class SourcePanel implements Panel {
     return written ?? { expanded: null, origin: null, calls: [] };
   }
 
-  /** The findings in the file that is shown. */
+  /** Returns the findings in the file shown. */
   private problems(): Highlight[] {
     return this.session.diagnostics.flatMap(({ file, line, end_line }) =>
       file === this.file && line !== null ? [{ from: line, to: end_line ?? line, look: "problem" as const }] : [],
@@ -189,7 +192,7 @@ export class SourcePanel implements Panel {
     this.update();
   }
 
-  /** The calls and includes on the way, each a way to its place. */
+  /** Shows the macro calls and includes that lead to the element, each as a link to its place. */
   private showTrail(): void {
     const words = strings.description.source;
     const { origin, calls } = this.places();
@@ -204,7 +207,9 @@ export class SourcePanel implements Panel {
     this.trail.replaceChildren(h("span", { class: "tag" }, words.made), ...steps, ...(back ? [back] : []));
   }
 
-  /** Selects what is written on a line; where that is several, as in a macro, the one after the selected. */
+  /**
+   * Selects the element written on a line; if a macro makes the line yield several, the one after the selected element.
+   */
   private choose(file: string, line: number): void {
     const here = this.model?.elementsAt(file, line) ?? [];
     const at = here.findIndex((element) => same(element, this.session.focus.current));

@@ -4,17 +4,17 @@ import { strings } from "../../strings";
 import { VirtualRows } from "../../widgets/virtual-rows";
 
 const ROW_PX = 18;
-/** Longer lines are cut: some files are one line of a megabyte. */
+/** Characters; longer lines are cut, because some files are a single line of a megabyte. */
 const LONGEST_LINE = 4000;
 
-/** Lines from..to, 1-based and inclusive, and how they are to look. */
+/** Lines `from` to `to`, 1-based and inclusive, and how they are marked. */
 export interface Highlight {
   readonly from: number;
   readonly to: number;
   readonly look: "focus" | "problem";
 }
 
-/** A text with line numbers and colours, of which only what is in sight is drawn. */
+/** A text with line numbers and syntax colours; only the visible lines are drawn. */
 export class SourceView {
   readonly element: HTMLElement;
   private readonly rows = new VirtualRows("source-lines", ROW_PX, (index) => this.row(index));
@@ -24,7 +24,7 @@ export class SourceView {
   private cursor = 1;
   private text: string | null = null;
 
-  /** @param chosen called with the line that the user clicked, or pressed Enter on. */
+  /** @param chosen - called with the line that the user clicked, or pressed Enter on. */
   constructor(
     label: string,
     private readonly chosen: (line: number) => void,
@@ -44,7 +44,7 @@ export class SourceView {
     return this.highlights;
   }
 
-  /** Shows a text; the same one stays as it is. */
+  /** Shows a text; does nothing if it is shown already. */
   setText(text: string): void {
     if (text === this.text) return;
     this.text = text;
@@ -62,7 +62,7 @@ export class SourceView {
     this.rows.refresh();
   }
 
-  /** Scrolls to a line; the cursor goes there. */
+  /** Scrolls to a line and moves the cursor there. */
   reveal(line: number): void {
     this.cursor = line;
     this.rows.reveal(line - 1);
