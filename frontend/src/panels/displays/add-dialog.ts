@@ -15,7 +15,7 @@ interface Choice {
 
 type Tab = "type" | "topic";
 
-/** RViz's dialog that adds a display: by its type, or by a topic that it shows. */
+/** RViz's dialog that adds a display, by its type or by a topic that it shows. */
 export class AddDialog {
   private readonly dialog: Dialog;
   private readonly search = h("input", { class: "field" });
@@ -31,7 +31,7 @@ export class AddDialog {
   private chosen: Choice | null = null;
   private named = "";
 
-  /** @param group - what the display goes into; null for none. */
+  /** @param group - the group that the display is added to; null for none. */
   constructor(
     private readonly session: Session,
     private readonly group: DisplayState | null,
@@ -143,7 +143,7 @@ export class AddDialog {
       const rows = ordered.map((cls) => this.choice(cls, topic, shortName(cls), aboutDisplay(cls)));
       const [obvious] = rows;
       const name = h("div", { class: "topic-name" }, topic, h("span", { class: "topic-type" }, message));
-      // The name represents the display that every user would take.
+      // The name stands for the display that most users would choose.
       for (const kind of ["click", "dblclick"] as const) {
         name.addEventListener(kind, () => obvious?.dispatchEvent(new MouseEvent(kind)));
       }
@@ -177,7 +177,7 @@ export class AddDialog {
       each.element.tabIndex = each === choice ? 0 : -1;
     }
     this.dialog.ready = choice !== null;
-    // A name that the user typed stays.
+    // Keep a name that the user typed.
     if (choice && (this.name.value === "" || this.name.value === this.named)) {
       this.named = shortName(choice.cls);
       this.name.value = this.named;
@@ -207,7 +207,7 @@ export class AddDialog {
   }
 }
 
-/** The purpose of a class of displays, in a sentence. */
+/** Returns the purpose of a display class, in one sentence. */
 function aboutDisplay(cls: string): string {
   return (strings.displays.about as Readonly<Record<string, string | undefined>>)[shortName(cls)] ?? cls;
 }

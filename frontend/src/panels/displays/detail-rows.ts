@@ -9,12 +9,12 @@ import type { DetailName } from "../../strings/en/details";
 import { formatNumber } from "../../tree/numbers";
 import type { TreeItem } from "../../tree/tree-item";
 
-/** Positions and quaternions are rounded to this, m. */
+/** Positions (m) and quaternions are rounded to multiples of this. */
 const FINEST = 1e-6;
 
 /**
- * The read-only rows that a row with `details` is shown with: where a frame, link or joint is now. They are not sent by
- * the server, which would have to with every move: the page has the poses. Names and forms are RViz's.
+ * Returns the read-only rows below a row with `details`: the current pose of a frame, link or joint. The page has the
+ * poses; the server would have to send these rows with every movement. Names and forms are RViz's.
  */
 export function detailRows(node: PropertyNode, display: DisplayState, session: Session): TreeItem[] {
   switch (node.details) {
@@ -86,12 +86,12 @@ function poseRows(id: string, pose: () => PoseNumbers | null, prefix = ""): Tree
   ];
 }
 
-/** Without what single precision adds to zeros. */
+/** Rounds away what single precision adds to zeros. */
 function settled(pose: PoseNumbers | null): number[] | null {
   return pose && pose.map((part) => Math.round(part / FINEST) * FINEST);
 }
 
-/** Numbers in one row as RViz writes them, and a row for each below it. */
+/** Returns a row with numbers in RViz's notation, with one row for each number below it. */
 function vectorRow(
   key: string,
   name: string,

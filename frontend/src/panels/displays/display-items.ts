@@ -9,7 +9,7 @@ import { propertyItem } from "../../tree/property-item";
 import type { TreeItem } from "../../tree/tree-item";
 import { displayRows } from "./robot-rows";
 
-/** The rows of the Displays panel, read from the session each time the tree is drawn. */
+/** Returns the rows of the Displays panel, read from the session each time the tree is drawn. */
 export function displayItems(session: Session): TreeItem[] {
   const { displays } = session;
   if (!displays.known) return [];
@@ -67,10 +67,10 @@ function displayItem(
   };
 }
 
-/** The message type of robots' descriptions. */
+/** The message type of robot descriptions. */
 const TEXT = "std_msgs/msg/String";
 
-/** The topics that fit a row of a display. */
+/** Asks the server for the topics that suit a row of a display, and passes them to `show`. */
 function offerTopics(
   session: Session,
   display: DisplayState,
@@ -94,12 +94,12 @@ function isDrawn(display: DisplayState): boolean {
   return display.isGroup || (display.supported && DRAWINGS.has(display.drawing));
 }
 
-/** A row of a status in one line. */
+/** Returns a status row as one line. */
 export function troubleText({ name, text }: StatusRow): string {
   return `${name}: ${text}`;
 }
 
-/** A description of a display, in a sentence or two. */
+/** Returns a description of a display, in a sentence or two. */
 export function describe(display: DisplayState, drawn = isDrawn(display)): string {
   const name = display.cls.split("/").pop() ?? "";
   const about = (strings.displays.about as Readonly<Record<string, string | undefined>>)[name];
@@ -107,16 +107,19 @@ export function describe(display: DisplayState, drawn = isDrawn(display)): strin
   return `${display.cls}. ${rest}`;
 }
 
-/** Displays that take no messages of their own: they do not need to be seen in the list. */
+/** Displays without messages; they are visible without their rows in the list. */
 const SCENERY = ["Grid", "Axes", "TF", "Group"];
 
-/** A RobotModel that is all there is to look at starts open; otherwise its links would push the others out of sight. */
+/**
+ * Whether a RobotModel is the only content. It then starts expanded; otherwise its links would push other displays out
+ * of sight.
+ */
 function isOnlyContent(session: Session, display: DisplayState): boolean {
   if (!display.cls.endsWith("/RobotModel")) return false;
   return session.displays.displays.every((each) => each === display || SCENERY.includes(shortName(each.cls)));
 }
 
-/** A group shows the worst status of its members. */
+/** Returns the worst status of a display and, for a group, of its members. */
 function worstWithin(session: Session, display: DisplayState): ShownLevel {
   const levels = [display, ...session.displays.displays.filter((each) => each.isWithin(display))]
     .filter((each) => each.enabled)
@@ -155,7 +158,7 @@ function statusItem(
   };
 }
 
-/** Among hundreds of links the one that fails must be seen. */
+/** Sorts status rows by severity: among hundreds of links, the one that fails must be visible. */
 function worstFirst(rows: readonly StatusRow[]): StatusRow[] {
   const order: Readonly<Record<StatusRow["level"], number>> = { error: 0, warn: 1, ok: 2 };
   return [...rows].sort((a, b) => order[a.level] - order[b.level]);

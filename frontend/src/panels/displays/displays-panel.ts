@@ -15,7 +15,7 @@ import { describe, displayItems, troubleText } from "./display-items";
 import { followLiveValues } from "./live-values";
 import { isExpansion, linkOfKey, linkPath } from "./robot-rows";
 
-/** RViz's Displays panel: what can be done, the property tree, and what the selected row means. */
+/** RViz's Displays panel: a toolbar, the property tree, and the description of the selected row. */
 export class DisplaysPanel implements Panel {
   readonly id = "displays";
   readonly icon = "displays";
@@ -24,7 +24,7 @@ export class DisplaysPanel implements Panel {
   private readonly commands: DisplayCommands;
   private readonly filter = h("input", { class: "field" });
   private readonly nothing = h("p", { class: "empty" }, strings.displays.nothingFound);
-  /** Comes with the first row that is selected. */
+  /** Hidden until a row is selected. */
   private readonly help = h("div", { class: "help", aria: { live: "polite" } });
   private explained = "";
   private readonly needsDisplay: HTMLButtonElement[] = [];
@@ -40,7 +40,7 @@ export class DisplaysPanel implements Panel {
     this.enableButtons();
   }
 
-  /** The display that the selected row is of or belongs to. */
+  /** The display to which the selected row belongs. */
   private get selected(): DisplayState | null {
     return this.displayOf(this.tree.selection);
   }
@@ -189,7 +189,7 @@ export class DisplaysPanel implements Panel {
     });
   }
 
-  /** Shows the description of a display, and its problems before that. */
+  /** Shows the problems of a display, followed by its description. */
   private explainDisplay(display: DisplayState): void {
     this.explain(display.name, describe(display), display.troubles);
   }
@@ -197,7 +197,7 @@ export class DisplaysPanel implements Panel {
   private selectLink(key: string): void {
     const found = linkOfKey(this.session, key);
     const { selected } = this.session.selection;
-    // A row that was revealed because its link is selected must not end the selection of others.
+    // Revealing the row of a selected link must not clear the selection of other links.
     if (found && selected?.display === found.display.id && selected.link.name === found.link) return;
     const link = found && this.session.robots.get(found.display.id)?.links.find((each) => each.name === found.link);
     if (found && link) this.session.selection.select({ display: found.display.id, link });
@@ -211,7 +211,7 @@ export class DisplaysPanel implements Panel {
   }
 }
 
-/** The keys of the rows from the outermost group to a display. */
+/** Returns the keys of the rows from the outermost group to a display. */
 function pathTo(display: DisplayState): string[] {
   return [...(display.group ? pathTo(display.group) : []), display.id];
 }

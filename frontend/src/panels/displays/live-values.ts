@@ -3,7 +3,7 @@ import type { TreeView } from "../../tree/tree-view";
 
 const INTERVAL_MS = 100;
 
-/** Keeps the rows of a tree current whose values are read from what is drawn, a few times a second while any is in view. */
+/** Updates the rows whose values follow the scene, a few times a second while any of them is visible. */
 export function followLiveValues(tree: TreeView, session: Session): void {
   let timer = 0;
   const soon = (): void => {
