@@ -3,7 +3,7 @@ import { strings } from "../../strings";
 import type { PanelId } from "../panel";
 
 interface Home {
-  /** Where the panel goes: beside the first of these that is open. */
+  /** Where the panel opens: next to the first of these panels that is open. */
   beside: readonly (readonly [PanelId, Direction])[];
   width?: number;
   height?: number;
@@ -17,16 +17,16 @@ const RIGHT: Home["beside"] = [
   ["scene", "right"],
 ];
 
-/** What is wide and read line by line shares one place below the scene. */
+/** Wide panels that are read line by line share one place below the scene. */
 const BOTTOM: readonly PanelId[] = ["source", "diagram", "joint-table", "editing", "plot", "topics", "graph", "parameters", "log"];
 const BELOW: Home = { beside: [...BOTTOM.map((id) => [id, "within"] as const), ["scene", "below"]], height: 300 };
-/** The part of the dock's height that a panel asks for at most. */
+/** The largest share of the dock's height that a panel requests. */
 const MOST_HEIGHT = 0.4;
 
 /** Pixels: one line, without a tab. */
 export const TIME_HEIGHT = 32;
 
-/** RViz's places: Displays left, the scene in the middle, everything else right. */
+/** RViz's places: Displays on the left, the scene in the middle, everything else on the right. */
 const HOMES: Readonly<Record<PanelId, Home>> = {
   scene: { beside: [] },
   displays: { beside: [["links", "within"], ["scene", "left"]], width: 320 },
@@ -117,36 +117,39 @@ const HOMES: Readonly<Record<PanelId, Home>> = {
   },
 };
 
-/** Up to this width, in pixels, there is no room for panels beside the scene. */
+/** Pixels; in a window up to this width there is no room for panels beside the scene. */
 const NARROW = 900;
-/** As wide as this panels have the widths that they would like; below it somewhat less. */
+/** Pixels; from this width panels have their preferred widths, below it somewhat less. */
 const ROOMY = 1280;
 const LEAST_SHARE = 0.7;
 
-/** Of the panels that share a group there, those in front when they open: the displays, and the panel that the page was opened for. */
+/**
+ * In windows where panels share a group, those that open in front: the displays, and the panel that the page was opened
+ * for.
+ */
 const IN_FRONT: readonly PanelId[] = ["displays", "world", "comparison"];
 
-/** A phone that is held across, where the status bar is left out, too. */
+/** A phone in landscape, where the status bar is hidden, too. */
 const LOW = "(max-height: 480px) and (max-width: 1000px) and (min-aspect-ratio: 3/2)";
-/** The part of such a window that panels have, and its least and most in pixels. */
+/** The share of such a window that panels get, and their minimum and maximum width in pixels. */
 const [LOW_SHARE, LOW_LEAST, LOW_MOST] = [0.4, 270, 340];
 
-/** The form of a window: with room beside the scene, with all panels below it, or, where it is low, with all beside it. */
+/** The form of a window: "wide" has room beside the scene, "narrow" shows all panels below it, "low" all beside it. */
 export type Form = "wide" | "narrow" | "low";
 
 export function formOf(api: DockviewApi): Form {
   return matchMedia(LOW).matches ? "low" : api.width <= NARROW ? "narrow" : "wide";
 }
 
-/** Of all the window the scene has at least this much there, besides the line of its tools. */
+/** In a narrow window the scene gets at least this share of the height, without the row of its tools. */
 const SCENE_SHARE = 0.5;
 const TOOLS_HEIGHT = 34;
-/** In a window narrower than this the last minutes, which come later, are a line of the foot by themselves. */
+/** Pixels; in a narrower window the history, which arrives later, is a row of its own in the foot. */
 const FOOT_WRAPS = 640;
 const FOOT_LINE = 30;
 const MOST_BELOW = 0.45;
 
-/** The place of a panel on a phone: the scene has one group with everything else below it. */
+/** Returns the place of a panel on a phone: one group below the scene has all other panels. */
 function narrowHome(api: DockviewApi, id: PanelId): Home {
   if (id === "scene") return HOMES.scene;
   const others = (Object.keys(HOMES) as PanelId[]).filter((each) => each !== "scene" && each !== id);
@@ -156,7 +159,7 @@ function narrowHome(api: DockviewApi, id: PanelId): Home {
   return { beside, height: Math.round(Math.min(left, api.height * MOST_BELOW)), inactive: !IN_FRONT.includes(id) };
 }
 
-/** The place of a panel on a phone held across: the scene has one group with everything else beside it. */
+/** Returns the place of a panel on a phone in landscape: one group beside the scene has all other panels. */
 function lowHome(api: DockviewApi, id: PanelId): Home {
   const { beside: near, inactive = false } = narrowHome(api, id);
   const beside: Home["beside"] = near.map(([other, where]) => [other, where === "below" ? "right" : where]);
@@ -170,10 +173,10 @@ function wideHome(api: DockviewApi, id: PanelId): Home {
   return home;
 }
 
-/** The order in which open panels move to their usual places. */
+/** The order in which open panels move to their default places. */
 export const USUAL: readonly PanelId[] = ["scene", "time", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "transformation", ...BOTTOM];
 
-/** Adds panels at their usual places. */
+/** Adds panels at their default places. */
 export function addPanels(api: DockviewApi, ids: readonly PanelId[]): void {
   const homeIn = { wide: wideHome, narrow: narrowHome, low: lowHome }[formOf(api)];
   for (const id of ids) {
@@ -182,7 +185,7 @@ export function addPanels(api: DockviewApi, ids: readonly PanelId[]): void {
     const options: AddPanelOptions = { id, component: id, tabComponent: id, title: strings.panels[id] };
     if (width !== undefined) options.initialWidth = width;
     if (height !== undefined) options.initialHeight = height;
-    // Alone in its group a panel must be active, or the group stays empty.
+    // A panel that is alone in its group must be active, or the group stays empty.
     if (inactive !== undefined && found?.[1] === "within") options.inactive = inactive;
     const position = found && { referencePanel: found[0], direction: found[1] };
     api.addPanel(position ? { ...options, floating: false, position } : options);

@@ -15,15 +15,15 @@ import { SceneTab } from "./scene-tab";
 import { takeTabKeys } from "./tab-keys";
 import { TimeStrip } from "./time-strip";
 
-/** The dockable panels; their arrangement is remembered by the browser, for each file. */
+/** The dockable panels; the browser stores their arrangement for each file. */
 export class Dock {
   /** A panel was opened, closed, moved or brought to the front. */
   readonly changed = new Signal();
-  /** The arrangement changed: panels must be titled, and those that depend on something opened or closed. */
+  /** The arrangement was replaced: titles must be set again, and panels that depend on data opened or closed. */
   readonly rearranged = new Signal();
-  /** Which of its panels the file shows, for `reset`; null when it does not say. */
+  /** The panels that the file shows, for `reset`; null if it does not specify them. */
   listed: readonly PanelName[] | null = null;
-  /** The file that the arrangement is kept for; null until one is known. */
+  /** The file for which the arrangement is stored; null until one is known. */
   file: string | null = null;
   /** The panels of displays. */
   readonly displayPanels = new DisplayPanels(() => this.api);
@@ -34,7 +34,7 @@ export class Dock {
   private readonly frontTabs: FrontTabs;
   private readonly panels: ReadonlyMap<string, Panel>;
   private readonly tabs = new Map<string, PanelTab>();
-  /** The numbers behind titles, of panels that are closed, too. */
+  /** The numbers in the titles, also of closed panels. */
   private readonly counts = new Map<PanelId, number>();
   private form: Form;
 
@@ -58,10 +58,10 @@ export class Dock {
     this.sceneTab = new SceneTab(this.api);
     this.frontTabs = new FrontTabs(this.api);
     takeTabKeys(parent, (id) => this.tabs.get(id));
-    // Panels get their sizes when they are added; the dock's own observer would tell its size only later.
+    // Panels get their sizes when they are added; the dock's own observer would report its size too late.
     this.api.layout(parent.clientWidth, parent.clientHeight);
     this.form = formOf(this.api);
-    // Most often the file is the one of the last time: then nothing moves when that is known.
+    // Usually the file is the one of the last visit, and nothing moves once that is known.
     const latest = layouts.latest(this.form);
     if (latest && this.restore(latest)) this.file = latest.file;
     else this.reset();
@@ -88,7 +88,7 @@ export class Dock {
     return this.api.getPanel(id) !== undefined;
   }
 
-  /** Opens a panel where it belongs, or brings it to the front. */
+  /** Opens a panel at its place, or brings it to the front. */
   open(id: PanelId): void {
     this.add(id);
     this.api.getPanel(id)?.api.setActive();
@@ -100,7 +100,7 @@ export class Dock {
     if (panel) this.api.removePanel(panel);
   }
 
-  /** A number behind a panel's title; 0 takes it away. */
+  /** Shows a number after a panel's title; 0 removes it. */
   setCount(id: PanelId, count: number): void {
     this.counts.set(id, count);
     this.retitle();
@@ -117,7 +117,7 @@ export class Dock {
     return count > 0 ? `${title(id)} (${count})` : title(id);
   }
 
-  /** The arrangement of the first visit. */
+  /** Restores the arrangement of the first visit. */
   reset(): void {
     const joints = this.api.getPanel("joints") !== undefined;
     this.build(["scene", "time", "displays", "links", "views", "tool-properties", "selection", "diagnostics", ...(joints ? (["joints"] as const) : [])]);
@@ -125,7 +125,7 @@ export class Dock {
     this.rearranged.emit();
   }
 
-  /** Shows the arrangement that the browser keeps for a file; false when it keeps none. */
+  /** Shows the arrangement that the browser stores for a file; returns false if there is none. */
   arrange(file: string): boolean {
     const layout = this.layouts.find(file, this.form);
     if (!layout) return false;
@@ -140,13 +140,13 @@ export class Dock {
     return true;
   }
 
-  /** Keeps the arrangement for a file from now on. */
+  /** Stores the arrangement for this file from now on. */
   keepFor(file: string): void {
     this.file = file;
     this.remember();
   }
 
-  /** Opens these panels, and closes all others that files list. */
+  /** Opens these panels, and closes all others that files can list. */
   showOnly(panels: readonly PanelName[]): void {
     for (const id of FILE_PANELS) {
       if (panels.includes(id)) this.add(id);
@@ -170,14 +170,16 @@ export class Dock {
     this.widths.take();
   }
 
-  /** Hides the tabs of panels that are alone in their group and need none. */
+  /** Hides the tabs of panels that are alone in their group and need no tab. */
   private followLone(): void {
     this.strip.follow();
     this.sceneTab.follow(this.form !== "wide");
     this.frontTabs.follow();
   }
 
-  /** The window has another form: the same panels, as they were in such a window or where they belong. */
+  /**
+   * Shows the same panels after the window took another form, as they were in such a window or at their default places.
+   */
   private changeForm(): void {
     this.form = formOf(this.api);
     if (this.file !== null && this.arrange(this.file)) return;
@@ -203,7 +205,7 @@ export class Dock {
       this.retitle();
       return this.isOpen("scene");
     } catch {
-      // A layout of another version of the page: start over.
+      // The layout is from another version of the page: start over.
       this.api.clear();
       return false;
     }

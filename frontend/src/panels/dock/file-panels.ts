@@ -3,7 +3,7 @@ import type { Configuration, PanelName, Panels } from "../../protocol";
 import type { Signal } from "../../signal";
 import type { PanelId } from "../panel";
 
-/** The panels that files know of. */
+/** The panels that files can list. */
 export const FILE_PANELS: readonly PanelName[] = [
   "displays",
   "selection",
@@ -20,7 +20,7 @@ export interface Arrangement {
   readonly file: string | null;
   listed: readonly PanelName[] | null;
   isOpen(id: PanelId): boolean;
-  /** Shows what the browser keeps for a file; false when that is nothing. */
+  /** Shows the arrangement that the browser stores for a file; returns false if there is none. */
   arrange(file: string): boolean;
   keepFor(file: string): void;
   open(id: PanelId): void;
@@ -28,23 +28,23 @@ export interface Arrangement {
 }
 
 /**
- * Keeps the open panels and the file's in step.
+ * Synchronizes the open panels with those of the file.
  *
- * A page that opens has the arrangement that the browser keeps for the file. Where there is none, and whenever another
- * configuration takes the place of the one before, the file specifies its open panels. The panels that the user opens and
- * closes afterwards are kept by the browser and sent to the server, which writes them into the file.
+ * A page that opens uses the arrangement that the browser stores for the file. Where there is none, and whenever
+ * another configuration replaces the current one, the file specifies the open panels. The browser stores the panels
+ * that the user opens and closes afterwards, and the server, which receives them, writes them into the file.
  */
 export class FilePanels {
   private told: Panels | null = null;
   private configuration: Configuration | null = null;
-  /** The number of the configuration that is shown; null after a connection was made, before anything is known. */
+  /** The number of the configuration shown; null after connecting, until one is known. */
   private shown: number | null = null;
-  /** Which of the file's panels were open when last looked at. */
+  /** The file's panels that were open at the last comparison. */
   private open: readonly PanelName[] | null = null;
   /** Neither a file nor the browser specifies the arrangement of this page's panels. */
   private unarranged = false;
   private drivable = false;
-  /** The browser keeps no arrangement for the file. */
+  /** Whether the browser stores no arrangement for the file. */
   private isFirstVisit = false;
   private listens = false;
 
@@ -75,21 +75,21 @@ export class FilePanels {
     dock.changed.on(() => this.compare());
   }
 
-  /** A simulated robot is there to be driven: the pad is open unless it is known how the panels should be. */
+  /** Opens the Teleop panel for a simulated robot that can be driven, unless the arrangement is specified. */
   private openPad(): void {
     if (!this.drivable || !this.unarranged) return;
     this.unarranged = false;
     this.dock.open("teleop");
   }
 
-  /** A robot is there to be talked to, in a file that is seen for the first time. */
+  /** Opens the Voice panel for a robot that listens, if the file is shown for the first time. */
   private openVoice(): void {
     if (!this.listens || !this.isFirstVisit) return;
     this.isFirstVisit = false;
     this.dock.open("voice");
   }
 
-  /** Follows the configuration as soon as both messages about it have arrived. */
+  /** Applies the configuration once both messages about it have arrived. */
   private settle(): void {
     const { told, configuration, dock } = this;
     if (!told || told.opened !== configuration?.opened) return;

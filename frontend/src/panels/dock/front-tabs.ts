@@ -1,15 +1,15 @@
 import type { DockviewApi } from "dockview";
 
-/** Keeps the whole tab of each panel that is in front in view, where the tabs of its place need more room than there is. */
+/** Keeps the tab of each front panel fully visible where a group's tabs do not fit into its bar. */
 export class FrontTabs {
   private readonly sizes = new ResizeObserver(() => this.show());
 
   constructor(private readonly api: DockviewApi) {}
 
-  /** The arrangement, or what is in front, may be another. */
+  /** Scrolls the tab bars after the arrangement or the front panels may have changed. */
   follow(): void {
     this.sizes.disconnect();
-    // What the dock offers in place of the tabs that have no room comes later, and takes some.
+    // The dock's button for hidden tabs appears later and takes some of the bar's width.
     for (const bar of this.bars()) this.sizes.observe(bar);
     this.show();
   }

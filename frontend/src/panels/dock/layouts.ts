@@ -2,7 +2,7 @@ import type { SerializedDockview } from "dockview";
 import type { TextStorage } from "../../storage";
 import type { Form } from "./default-layout";
 
-/** An arrangement of panels, the file that it is kept for, and the form of the window that it is of. */
+/** An arrangement of panels, with the file and the form of window that it is stored for. */
 export interface Layout {
   file: string;
   form: Form;
@@ -10,14 +10,14 @@ export interface Layout {
 }
 
 const KEY = "linkwright.layouts.3";
-/** Of more the browser forgets the one that was seen longest ago. */
+/** The number of stored arrangements; beyond it, the browser drops the one used longest ago. */
 const MOST = 12;
 
-/** The arrangements of panels that the browser keeps, for each file one of each form of window. */
+/** The arrangements of panels that the browser stores, one for each file and form of window. */
 export class Layouts {
   constructor(private readonly storage: TextStorage) {}
 
-  /** The arrangement of the file that was seen last in a window of a form. */
+  /** Returns the most recent arrangement for a form of window, of whichever file. */
   latest(form: Form): Layout | null {
     return this.read().find((each) => each.form === form) ?? null;
   }
@@ -27,7 +27,7 @@ export class Layouts {
   }
 
   keep(layout: Layout): void {
-    // Read again each time: another tab may have another file.
+    // Read again each time: another tab may have stored another arrangement.
     const others = this.read().filter(({ file, form }) => file !== layout.file || form !== layout.form);
     this.storage.setItem(KEY, JSON.stringify([layout, ...others].slice(0, MOST)));
   }
