@@ -1,4 +1,4 @@
-/** A line of a diff: its sign and the text before, in and after the part that differs from another line. */
+/** A line of a diff: its sign, and the text before, in and after the part that differs from the line it replaces. */
 export interface DiffLine {
   /** `-`, `+`, `@` or a blank. */
   readonly sign: string;
@@ -7,7 +7,7 @@ export interface DiffLine {
   readonly after: string;
 }
 
-/** The lines of a unified diff; lines that replace as many others have their differing part marked. */
+/** Returns the lines of a unified diff. Where lines replace an equal number of lines, the differing part is marked. */
 export function diffLines(lines: readonly string[]): DiffLine[] {
   const told: DiffLine[] = [];
   for (let at = 0; at < lines.length; ) {
@@ -37,7 +37,7 @@ function pair(old: string, now: string): [DiffLine, DiffLine] {
   let [head, tail] = [0, 0];
   while (head < least && old[head] === now[head]) head += 1;
   while (tail < least - head && old.at(-1 - tail) === now.at(-1 - tail)) tail += 1;
-  // Complete numbers and words differ, not digits of them.
+  // Mark whole numbers and words rather than single characters of them.
   while (isOfWord(old[head - 1])) head -= 1;
   while (isOfWord(old[old.length - tail])) tail -= 1;
   const line = (sign: string, text: string): DiffLine => {

@@ -6,12 +6,12 @@ import { strings } from "../../strings";
 import { shortPath } from "../place";
 import { diffLines } from "./diff-lines";
 
-/** How many characters before and after what differs are shown of a long line, and in a low panel. */
+/** The number of characters shown before and after the difference, in a long line or a low panel. */
 const [NEAR_BEFORE, NEAR_AFTER] = [16, 10];
-/** Characters of a line that is shown whole where there is room. */
+/** Up to this number of characters, a line is shown whole if there is room. */
 const LONGEST_WHOLE = 90;
 
-/** The preview of an edit in the files, or why it is refused, with buttons to write and undo it. */
+/** The preview of an edit in the files, or the reason for its refusal, with buttons to write and undo it. */
 export class EditOutcome {
   readonly element: HTMLElement;
   private readonly text = h("div", { class: "edit-text", role: "status", tabIndex: 0 });
@@ -71,7 +71,7 @@ function diff({ file, diff: lines }: EditedFile): HTMLElement {
   return h("figure", { class: isLong ? "edit-diff long" : "edit-diff" }, h("figcaption", { title: file }, shortPath(file)), h("pre", {}, ...rows));
 }
 
-/** What there is only room for in a panel that is high enough, and where lines are short. */
+/** Returns the distant part of a line, which only a high panel with short lines shows. */
 function far(text: string): HTMLElement | null {
   return text === "" ? null : h("span", { class: "far" }, text);
 }

@@ -15,10 +15,10 @@ import { EditOutcome } from "./edit-outcome";
 
 /** m */
 const LENGTH_STEPS = [0.001, 0.005, 0.01, 0.05, 0.1] as const;
-/** What an arrow key moves: m, parts of an axis, rad. */
+/** The step of an arrow key: m, components of an axis, rad. */
 const [MOVE, TURN_RAD, TURN_DEGREES] = [0.001, 0.01, Math.PI / 180];
 
-/** A field of a number; `isTyped`: the user has not finished typing. */
+/** A number field; `isTyped` while the user has not finished typing. */
 interface NumberInput {
   readonly input: HTMLInputElement;
   readonly value: () => number;
@@ -37,10 +37,10 @@ export class EditingPanel implements Panel {
   private readonly fields = h("div", { class: "editing-fields" });
   private readonly modes = h("div", { class: "segmented", role: "group", aria: { label: strings.editing.handles } });
   private shown: EditablePart | null = null;
-  /** What the fields are of. */
+  /** The part and unit for which the fields were built. */
   private built = "";
   private inputs: NumberInput[] = [];
-  /** What an axis has no use for, which is turned in its joint's frame. */
+  /** The controls that only a pose needs: an axis can only be rotated in its joint's frame. */
   private ofPoses: readonly HTMLElement[] = [];
 
   constructor(private readonly session: Session) {
@@ -59,7 +59,7 @@ export class EditingPanel implements Panel {
     for (const signal of [editing.changed, editing.draftChanged, editing.snapping.changed]) signal.on(update);
     angles.changed.on(() => {
       this.shown = null;
-      this.update(); // at once: what is typed next is meant in the new unit
+      this.update(); // Update immediately: the number typed next is meant in the new unit.
     });
     follow();
     this.update();
@@ -94,7 +94,7 @@ export class EditingPanel implements Panel {
     return row;
   }
 
-  /** The fields of a part, which stay while it does: the user may be typing. */
+  /** Builds the fields of a part, or keeps them if it is the same part: the user may be typing. */
   private build(part: EditablePart | null): void {
     this.shown = part;
     this.place.replaceChildren();
@@ -179,7 +179,7 @@ export class EditingPanel implements Panel {
     const { editing } = this.session;
     const now = editing.draft ?? editing.chosen;
     if (!now) return;
-    // Degrees that were typed are said by no more digits than they have.
+    // Converting typed degrees must not add digits to the file.
     const rounded = Number(value.toPrecision(12));
     editing.move({ xyz: now.xyz, rpy: now.rpy, [kind]: now[kind].map((old, i) => (i === index ? rounded : old)) });
   }

@@ -9,7 +9,7 @@ import { holdWhileSeen } from "../../widgets/when-seen";
 import { currentModel } from "../description/current-model";
 import type { Panel } from "../panel";
 
-/** All joints of the robot with what the description says of them. */
+/** A table of all joints of the robot with their properties in the description. */
 export class JointTablePanel implements Panel {
   readonly id = "joint-table";
   readonly icon = "table";
@@ -85,7 +85,7 @@ export class JointTablePanel implements Panel {
     return row;
   }
 
-  /** Three clicks: up, down, the order of the file. */
+  /** Cycles through ascending order, descending order, and the order of the file. */
   private sortBy(column: Column): void {
     if (this.order?.column !== column) this.order = { column, descending: false };
     else this.order = this.order.descending ? null : { column, descending: true };

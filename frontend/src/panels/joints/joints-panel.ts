@@ -7,10 +7,10 @@ import { JointRow } from "./joint-row";
 import { PoseBar } from "./pose-bar";
 import { SweepBar } from "./sweep-bar";
 
-/** From this many joints on a filter helps. */
+/** The number of joints from which on the filter is shown. */
 const FILTER_FROM = 10;
 
-/** joint_state_publisher_gui's sliders, with named poses and a sweep. */
+/** The sliders of joint_state_publisher_gui, with named poses and a sweep. */
 export class JointsPanel implements Panel {
   readonly id = "joints";
   readonly icon = "joints";

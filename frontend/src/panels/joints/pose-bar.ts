@@ -6,7 +6,7 @@ import { strings } from "../../strings";
 import { openMenu } from "../../widgets/menu";
 import { saveText } from "../../widgets/save-file";
 
-/** Named poses of the robot: recalled with a click, saved under a name, taken elsewhere as SRDF. */
+/** Named poses of the robot, which can be recalled, saved, and exported and imported as SRDF. */
 export class PoseBar {
   readonly element: HTMLElement;
   private readonly chips = h("div", { class: "pose-chips" });
@@ -65,7 +65,7 @@ export class PoseBar {
     );
   }
 
-  /** The poses that the robot is in. */
+  /** Marks the poses that the robot is in. */
   private mark(): void {
     const { poses, joints } = this.session;
     const known = poses.of(this.robot);

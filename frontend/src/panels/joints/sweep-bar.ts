@@ -5,10 +5,10 @@ import { Sweep, type SweepOrder } from "../../state/sweep";
 import { strings } from "../../strings";
 
 const SPEEDS = [0.25, 0.5, 1, 2, 4] as const;
-/** A page that was away for longer continues where it was. */
+/** The longest step of the sweep: a page that was suspended continues where it was. */
 const LONGEST_STEP_S = 0.1;
 
-/** Moves the joints through their ranges until it is stopped, or the user moves them elsewhere. */
+/** Moves the joints through their ranges until the user stops it or the joints change. */
 export class SweepBar {
   readonly element: HTMLElement;
   private readonly order = h("select", { class: "choice" });
@@ -77,7 +77,7 @@ export class SweepBar {
   }
 }
 
-/** Links follow the mouse without Alt; for touch screens, and for those who move a lot. */
+/** Returns the switch for dragging links without Alt, for touch screens and for frequent use. */
 function handsOnSwitch(joints: JointsState): HTMLElement {
   const toggle = (): void => {
     joints.handsOn = !joints.handsOn;

@@ -5,10 +5,13 @@ import { LEAST_SIZE, resized, tidy, type Change } from "../../state/modelling/sh
 import { strings } from "../../strings";
 import type { TreeItem } from "../../tree/tree-item";
 
-/** Roll, pitch and yaw in a pose. */
+/** The index of roll, followed by pitch and yaw, in a pose. */
 const ANGLES = 3;
 
-/** The rows of the selection; where several entities differ, the value is empty, and an edit is for all of them. */
+/**
+ * Returns the property rows of the selection. A value that differs among the entities is shown empty; an edit applies
+ * to all of them.
+ */
 export function entityItems(modelling: Modelling, angles: AngleUnits): TreeItem[] {
   const entities = modelling.selectedEntities;
   const [first] = entities;
@@ -74,7 +77,7 @@ function colourItem({ colour }: WorldEntity, edit: Edit): TreeItem {
   return { key: "colour", name: strings.modelling.colour, kind: "color", value: hex(colour ?? []), description: "", set };
 }
 
-/** `#rrggbb` of red, green, blue from 0 to 1. */
+/** Returns `#rrggbb` for red, green and blue from 0 to 1. */
 export function hex(colour: readonly number[]): string {
   const channel = (i: number): string => Math.round(Math.max(0, Math.min(1, colour[i] ?? 0)) * 255).toString(16).padStart(2, "0");
   return `#${channel(0)}${channel(1)}${channel(2)}`;
@@ -92,7 +95,7 @@ function note(key: string, name: string, value = ""): TreeItem {
   return { key, name, kind: "group", value, description: "", strong: value === "" };
 }
 
-/** The one value that all have; null where they differ. */
+/** Returns the value that all have in common; null if they differ. */
 function common(values: readonly number[]): number | null {
   const [first = null] = values;
   return values.every((value) => value === first) ? first : null;

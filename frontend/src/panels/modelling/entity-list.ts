@@ -15,12 +15,12 @@ const ICONS: Readonly<Record<Shape, IconName>> = {
   ramp: "shapeRamp",
 };
 
-/** All entities in the world, by name; several can be selected, as in the scene. */
+/** The list of all entities in the world, by name; several can be selected, as in the scene. */
 export class EntityList {
   readonly element: HTMLElement;
   private readonly rows: VirtualRows;
   private entities: readonly WorldEntity[] = [];
-  /** The row that keys continue from, and where a range begins. */
+  /** The row from which arrow keys continue, and the row where a range begins. */
   private current = 0;
   private anchor = 0;
 
@@ -69,7 +69,7 @@ export class EntityList {
     return row;
   }
 
-  /** With Shift the browser would select text, from the field on that was edited last. */
+  /** Stops the browser from selecting text on Shift, which would start at the field edited last. */
   private pressed(event: MouseEvent): void {
     if (!event.shiftKey) return;
     event.preventDefault();

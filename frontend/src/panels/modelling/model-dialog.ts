@@ -5,7 +5,7 @@ import type { Modelling } from "../../state/modelling/modelling";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
 
-/** Chooses among the models on the search path; the next click in the scene puts it there. */
+/** Lets the user choose among the models on the search path; the next click in the scene places the model. */
 export class ModelDialog {
   private readonly dialog: Dialog;
   private readonly search = h("input", { class: "field" });

@@ -7,7 +7,7 @@ import { keyText, type Shortcut } from "../../widgets/shortcuts";
 import { ModelDialog } from "./model-dialog";
 import { WORLD_KEYS, type WorldCommands } from "./world-commands";
 
-/** The entities that can be put into the world, except models. */
+/** The entities that can be added to the world, except models. */
 const PALETTE: readonly (readonly [Exclude<NewKind, "model">, IconName])[] = [
   ["box", "shapeBox"],
   ["cylinder", "shapeCylinder"],
@@ -24,7 +24,7 @@ const MODES: readonly (readonly [GizmoMode, IconName])[] = [
   ["scale", "scale"],
 ];
 
-/** Over the scene while the world is modelled: what can be added, what the gizmo does, undo and save. */
+/** The toolbar over the scene while the world is modelled: entities to add, modes of the gizmo, undo and save. */
 export class ModellingBar {
   readonly element: HTMLElement;
   private readonly palette = new Map<NewKind, HTMLButtonElement>();
@@ -70,7 +70,10 @@ export class ModellingBar {
     this.save.classList.toggle("unsaved", modelling.unsaved);
   }
 
-  /** A click takes the entity in hand, dragging drops it onto the ground, and the keyboard puts it into the middle. */
+  /**
+   * Returns a button that adds an entity: a click selects it for placing, dragging drops it onto the ground, and the
+   * keyboard adds it at the centre of the scene.
+   */
   private adder(kind: Exclude<NewKind, "model">, name: IconName): HTMLButtonElement {
     const { modelling } = this;
     const words = strings.modelling;
@@ -89,7 +92,7 @@ export class ModellingBar {
       setTimeout(() => (wasDropped = false));
       modelling.drop({ placing, at: { x, y } });
     });
-    // Else a finger that drags would scroll, and the button would hear no more of it.
+    // Without the capture, dragging a finger would scroll the page, and the button would receive no further events.
     made.addEventListener("pointerdown", ({ pointerId }) => made.setPointerCapture(pointerId));
     return made;
   }

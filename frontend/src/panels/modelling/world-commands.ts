@@ -3,7 +3,7 @@ import { strings } from "../../strings";
 import { askName } from "../../widgets/dialog";
 import { matches, type Shortcut } from "../../widgets/shortcuts";
 
-/** The keys of modelling, as Gazebo and Blender have them. */
+/** The keys of modelling, as in Gazebo and Blender. */
 export const WORLD_KEYS = {
   translate: { key: "t" },
   rotate: { key: "r" },
@@ -22,17 +22,17 @@ export const WORLD_KEYS = {
   escape: { key: "Escape" },
 } as const satisfies Readonly<Record<string, Shortcut>>;
 
-/** Where keys are text, or belong to what is open over the page. */
+/** Elements in which keys enter text. */
 const TEXT = "input:not([type=checkbox]):not([type=range]), textarea, select, [contenteditable]";
 const OTHERS = "dialog, [role=menu]";
-/** Panels have keys of their own; the world's hold in its own panel. */
+/** Panels have keys of their own; the world's keys also work in the World panel. */
 const ELSEWHERE = ".panel:not(.world-panel)";
 
-/** The commands of keys and buttons on the world. */
+/** The commands for modelling the world, as keys and buttons run them. */
 export class WorldCommands {
   private readonly runs: Readonly<Record<keyof typeof WORLD_KEYS, () => void>>;
 
-  /** `escape` releases the entity that the mouse holds, or has in hand. */
+  /** `escape` cancels the drag or the placing in progress. */
   constructor(
     private readonly modelling: Modelling,
     escape: () => void,
@@ -56,7 +56,7 @@ export class WorldCommands {
     };
   }
 
-  /** Into the world's file; where it has none yet, the user is asked for one. */
+  /** Saves the world to its file, or asks for a file if it has none yet. */
   save(): void {
     if (this.modelling.file === null) this.saveAs();
     else this.modelling.save(null);
@@ -67,7 +67,7 @@ export class WorldCommands {
     askName(words.saveAs, words.path, this.modelling.file ?? "", (path) => this.modelling.save(path));
   }
 
-  /** Takes the keys while the world is modelled: before those of tools, views and the File menu. */
+  /** Binds the keys, with precedence over those of tools, views and the File menu while the world is modelled. */
   takeKeys(): void {
     document.addEventListener(
       "keydown",

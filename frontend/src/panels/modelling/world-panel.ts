@@ -14,7 +14,7 @@ import { entityItems } from "./entity-items";
 import { EntityList } from "./entity-list";
 import { WORLD_KEYS, type WorldCommands } from "./world-commands";
 
-/** The models and lights of the world that is edited, and the numbers of the selected ones. */
+/** The models and lights of the world being edited, and the properties of the selection. */
 export class WorldPanel implements Panel {
   readonly id = "world";
   readonly icon = "build";

@@ -8,10 +8,10 @@ import { saveFrom } from "../../widgets/save-file";
 import { chooseTopics } from "./record-dialog";
 import { amountText, lengthText, secondsText } from "./timeline-text";
 
-/** Files that the menu offers. */
+/** The number of recorded files that the menu lists. */
 const MOST_FILES = 5;
 
-/** The button in the timeline that starts and ends recordings, which the server writes, and saves the last minutes. */
+/** The button in the timeline that starts and stops recordings, which the server writes, and saves the history. */
 export class RecordButton {
   readonly element: HTMLElement;
   private readonly button: HTMLButtonElement;
@@ -88,7 +88,7 @@ export class RecordButton {
     ];
   }
 
-  /** Tells where a recording is, and offers to show or fetch it. */
+  /** Shows where a recording was saved, and offers to open or download it. */
   private offer(file: RecordedFile): void {
     const words = strings.recording;
     new Dialog(

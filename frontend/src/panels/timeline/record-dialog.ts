@@ -27,7 +27,7 @@ export function chooseTopics(session: Session): void {
     "add-dialog",
   );
   const fill = (): void => {
-    // What is listed stays where the mouse may be: only topics that are new are added.
+    // Listed rows must not move under the mouse: only new topics are added.
     const known = new Set([...list.querySelectorAll("input")].map(({ value }) => value));
     list.append(...topics.topics.filter(({ name }) => !known.has(name)).map((topic) => row(topic, chosen, () => (dialog.ready = chosen.size > 0))));
   };

@@ -4,7 +4,9 @@ import type { TimeControlState } from "../../state/time";
 import { strings } from "../../strings";
 import type { TimeStrip } from "../dock/time-strip";
 
-/** At the foot of the page: the button that unfolds the fields of RViz's Time panel; it says when time stands still. */
+/**
+ * The button in the foot of the page that unfolds the fields of RViz's Time panel, and shows whether time is paused.
+ */
 export class TimeFold {
   readonly element: HTMLButtonElement;
 

@@ -5,7 +5,10 @@ import { strings } from "../../strings";
 import { whenSeen } from "../../widgets/when-seen";
 import type { Panel } from "../panel";
 
-/** Of the figures. Without a GPU each change of any of them costs as much as half a frame of the scene. */
+/**
+ * The interval at which the times are updated. Without a GPU, each change of text costs as much as half a frame of the
+ * scene.
+ */
 const REFRESH_MS = 1000;
 const MODES: readonly SyncMode[] = ["Off", "Exact", "Approximate"];
 const FIGURES: readonly (keyof Times)[] = ["ros", "rosElapsed", "wall", "wallElapsed"];
@@ -22,7 +25,7 @@ export class TimePanel implements Panel {
 
   private timer = 0;
 
-  /** @param close for the strip without a tab that this is below the scene. */
+  /** @param close - closes the panel while it is a strip without a tab below the scene. */
   constructor(
     private readonly time: TimeControlState,
     close: () => void,
@@ -47,7 +50,7 @@ export class TimePanel implements Panel {
     );
     time.changed.on(() => this.update());
     this.update();
-    // Clocks are asked for only while they are to be seen.
+    // Request times only while they are visible.
     whenSeen(this.element, (seen) => {
       time.watch(seen);
       clearInterval(this.timer);

@@ -9,21 +9,21 @@ import { strings } from "../../strings";
 import { RecordButton } from "./record-button";
 import { agoText, clockText, densities, extentText, momentText, passedText } from "./timeline-text";
 
-/** From this part of its room on, what is kept is as much as there can be. */
+/** From this share of its memory limit on, the history counts as full. */
 const FULL = 0.9;
 
-/** The tooltip about what is kept, and how to keep more where the room is used up. */
+/** Returns the tooltip on the history, and how to extend it if its memory is full. */
 function extentTip(extent: HistoryExtent): string {
   const text = strings.timeline.kept(extentText(extent), (extent.most / 1e6).toFixed(0));
   return extent.size < FULL * extent.most ? text : `${text}\n${strings.timeline.more}`;
 }
 
-/** Parts of the whole that Page Up and Page Down go. */
+/** The share of the timeline by which Page Up and Page Down move. */
 const PAGE = 0.1;
 
 /**
- * Along the foot of the page while a recording is shown, or the last minutes are kept: play, step, speed, loop, and a line of its time to drag on.
- * Where neither is, only what records.
+ * The bar in the foot of the page while a recording or the history is shown: play, step, speed, loop, and a track to
+ * drag on. Otherwise it has only the record button.
  */
 export class TimelineBar {
   readonly element: HTMLElement;
@@ -31,13 +31,13 @@ export class TimelineBar {
   private readonly loop: HTMLButtonElement;
   private readonly speed = h("select", { class: "choice", title: strings.timeline.speed, aria: { label: strings.timeline.speed } });
   private readonly steps = h("select", { class: "choice timeline-steps", title: strings.timeline.steps, aria: { label: strings.timeline.steps } });
-  /** Whether what has the keyboard got it by a press, and not by Tab. */
+  /** Whether the focused element got the focus by a press rather than by Tab. */
   private pressed = false;
   private readonly time = h("output", { class: "timeline-time" });
   private readonly marks = h("canvas", { class: "timeline-marks" });
   private readonly head = h("div", { class: "timeline-head" });
   private readonly part = h("div", { class: "timeline-part" });
-  /** Where the user has begun to mark a part, s since the epoch; null while none is being marked. */
+  /** Where the user started to mark a part, s since the epoch; null while no part is being marked. */
   private markFrom: number | null = null;
   private readonly track: HTMLElement;
   private readonly live: HTMLButtonElement;
@@ -121,7 +121,7 @@ export class TimelineBar {
     this.move();
   }
 
-  /** The topics that can be stepped by: those of a recording; of live data only the displayed topics are kept. */
+  /** Offers the topics to step by: those of the recording, or for live data those that are displayed. */
   private offerSteps(): void {
     const topics = (this.timeline.timeline?.topics ?? []).filter(({ count }) => count > 0).map(({ name }) => name);
     this.steps.hidden = topics.length < 2;
@@ -142,7 +142,7 @@ export class TimelineBar {
     const { start, end } = timeline;
     const part = end > start ? Math.min(1, Math.max(0, (position - start) / (end - start))) : 1;
     this.head.style.left = `${(part * 100).toFixed(3)}%`;
-    // The age keeps growing while time is paused: it is not a name for the displayed moment.
+    // The age cannot identify the displayed moment, because it keeps growing while time is paused.
     const passed = extent ? (live ? extentText(extent) : momentText(position)) : passedText(position - start, end - start);
     this.time.textContent = passed;
     this.time.title = extent ? `${clockText(position)}${live ? "" : ` ${agoText(end - position)}`}\n${extentTip(extent)}` : clockText(position);
@@ -165,7 +165,7 @@ export class TimelineBar {
     this.timeline.seek(this.timeAt(event));
   }
 
-  /** The time under the pointer, s since the epoch. */
+  /** Returns the time at the pointer, s since the epoch. */
   private timeAt(event: PointerEvent): number {
     const { start, end } = this.timeline.timeline ?? { start: 0, end: 0 };
     const box = this.track.getBoundingClientRect();
@@ -196,7 +196,7 @@ export class TimelineBar {
     event.preventDefault();
   }
 
-  /** Space plays and pauses, the arrows step, wherever nothing else has a use for them. */
+  /** Binds Space to play and pause, and the arrow keys to stepping, where nothing else uses them. */
   private takeKeys(): void {
     document.addEventListener("keydown", (event) => {
       const { target } = event;
@@ -212,7 +212,7 @@ export class TimelineBar {
     });
   }
 
-  /** Steps with the arrow keys after a press into the scene of another time; after Tab they turn the camera. */
+  /** Binds the arrow keys to stepping after a press into the scene of a past time; after Tab they rotate the camera. */
   private takeKeysOfScene(): void {
     document.addEventListener("pointerdown", () => (this.pressed = true), true);
     document.addEventListener(
@@ -235,7 +235,7 @@ export class TimelineBar {
     return target === document.body || this.element.contains(target);
   }
 
-  /** Draws the density of messages, a line for each topic that has any, the more the darker. */
+  /** Draws the density of messages, in one row for each topic with messages; darker means more messages. */
   private drawMarks(): void {
     const rows = densities(this.timeline.timeline?.topics ?? []);
     const { width, height } = this.track.getBoundingClientRect();

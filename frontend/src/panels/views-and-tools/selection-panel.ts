@@ -8,7 +8,7 @@ import { TreeView } from "../../tree/tree-view";
 import { whenSeen } from "../../widgets/when-seen";
 import type { Panel } from "../panel";
 
-/** How often values of the selection are read again while they move. */
+/** The interval at which values of the selection are read while they change. */
 const REFRESH_MS = 250;
 
 /** RViz's Selection panel: the selection, and the properties that its display reports. */

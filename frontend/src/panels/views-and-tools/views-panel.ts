@@ -13,7 +13,7 @@ import type { Panel } from "../panel";
 
 const CURRENT = "current";
 
-/** RViz's Views panel: the current view, and those that are kept. */
+/** RViz's Views panel: the current view and the saved ones. */
 export class ViewsPanel implements Panel {
   readonly id = "views";
   readonly icon = "camera";
@@ -148,7 +148,7 @@ export class ViewsPanel implements Panel {
   }
 }
 
-/** The rows of a view; their keys begin with its owner's. */
+/** Returns the rows of a view; their keys begin with the key of the view. */
 function rows(
   owner: string,
   properties: readonly Property[],
@@ -172,7 +172,7 @@ function rows(
   });
 }
 
-/** `1; 2; 3` for a point. */
+/** Returns `1; 2; 3` for a point. */
 function summary(children: readonly Property[], values: ViewValues): string {
   return formatPoint(children.map(({ id, value }) => Number(values[id] ?? value)));
 }

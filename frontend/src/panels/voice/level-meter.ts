@@ -2,7 +2,7 @@ import { h } from "../../dom";
 import { meterPart } from "../../state/voice/level";
 import { strings } from "../../strings";
 
-/** Sound is cut off at this peak and above. */
+/** Sound clips at this peak and above. */
 const LOUD = 0.97;
 
 /** A meter of the microphone's level. */
@@ -15,7 +15,7 @@ export class LevelMeter {
     this.show(null);
   }
 
-  /** Shows a peak of 0 to 1; null while there is no microphone. */
+  /** Shows a peak from 0 to 1; null while there is no microphone. */
   show(peak: number | null): void {
     const part = meterPart(peak ?? 0);
     this.bar.style.width = `${Math.round(100 * part)}%`;

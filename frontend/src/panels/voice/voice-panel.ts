@@ -15,7 +15,7 @@ import { WordsBox } from "./words-box";
 
 const ICONS = { partial: "microphone", text: "microphone", command: "check", response: "speech" } as const satisfies Record<ConversationPart, string>;
 
-/** Talk to the robot, and see what it heard, understood and answered. */
+/** The panel for talking to the robot, with what it heard, understood and answered. */
 export class VoicePanel implements Panel {
   readonly id = "voice";
   readonly icon = "microphone";
@@ -71,7 +71,7 @@ export class VoicePanel implements Panel {
     this.showHistory();
   }
 
-  /** Has the user say the words where they stand. */
+  /** Starts enrolment at the user's place. */
   enrolHere(): void {
     this.box.enrolHere();
   }

@@ -1,7 +1,7 @@
 import type { VoiceState } from "../../state/voice/voice";
 import { strings } from "../../strings";
 
-/** The obstacle to talking, and what to do about it; null when there is none. */
+/** Returns the obstacle to talking and its remedy; null if there is none. */
 export function obstacle(voice: VoiceState): string | null {
   const words = strings.voice;
   const { microphone, told, held, open } = voice;
@@ -16,7 +16,7 @@ export function obstacle(voice: VoiceState): string | null {
   return null;
 }
 
-/** The state of the microphone, in words. */
+/** Returns the state of the microphone in words. */
 export function activity(voice: VoiceState): string {
   const words = strings.voice;
   if (voice.microphone.isOpening) return words.opening;

@@ -9,10 +9,10 @@ import { askName } from "../../widgets/dialog";
 import { saveText } from "../../widgets/save-file";
 import { obstacle } from "./voice-words";
 
-/** Below this the loudest sample of a recording is rather quiet: -24 dB. */
+/** A recording whose peak is below this counts as quiet: -24 dB. */
 const QUIET = 0.06;
 
-/** The words that the user enrols: each is said three times, with a button that is held. */
+/** The words that the user enrols: each is spoken three times, with a button held down. */
 export class WordsBox {
   readonly element: HTMLDetailsElement;
   private readonly list = h("div", { class: "word-list", role: "list" });
@@ -23,7 +23,7 @@ export class WordsBox {
   private readonly hereNote = h("span", { class: "note" });
   private readonly hereDone = h("strong", { role: "status" });
   private shown = "";
-  /** What is to be said next takes the focus as soon as the words are known. */
+  /** Whether the next word to speak takes the focus once the words are known. */
   private focusDue = false;
 
   constructor(
@@ -79,12 +79,12 @@ export class WordsBox {
     this.show();
   }
 
-  /** Whether the panel can be seen. */
+  /** Requests the words while the panel is visible and this box is open. */
   watch(seen: boolean): void {
     this.words.watch(seen && this.element.open);
   }
 
-  /** Has the user say the words where they stand. The panel must be in front. */
+  /** Starts enrolment at the user's place. The panel must be in front. */
   enrolHere(): void {
     this.element.open = true;
     this.focusDue = true;
@@ -96,7 +96,7 @@ export class WordsBox {
     const { words } = this;
     const all = words.all;
     const key = JSON.stringify(all.map(({ name }) => name));
-    // While a button is held it must stay where it is.
+    // Replace the rows only if words changed: a button that is held must stay in place.
     if (key !== this.shown) {
       this.shown = key;
       this.list.replaceChildren(...all.map((word) => this.row(word)));
@@ -175,7 +175,7 @@ export class WordsBox {
   }
 }
 
-/** The outcome of a take, in words. */
+/** Returns the verdict on a take in words. */
 function judgement({ code, text, peak, seconds }: TakeJudged): string {
   const texts = strings.voice.words;
   const known: Readonly<Record<string, string>> = texts.codes;
