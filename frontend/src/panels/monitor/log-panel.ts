@@ -131,7 +131,7 @@ export class LogPanel implements Panel {
     return row;
   }
 
-  /** Up and down go from record to record. */
+  /** Moves to the previous or next record with the arrow keys. */
   private keyed(event: KeyboardEvent): void {
     const { shown } = this.state;
     const at = this.chosen ? shown.indexOf(this.chosen) : shown.length;

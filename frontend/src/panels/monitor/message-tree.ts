@@ -8,22 +8,22 @@ interface Row {
   readonly value: HTMLElement;
   readonly children: HTMLElement;
   readonly toggle: HTMLButtonElement | null;
-  /** Tells how many elements are left out. */
+  /** Shows the number of elements that are omitted. */
   readonly omitted: HTMLElement;
 }
 
-/** A message as a tree that is opened row by row; new messages change the texts and leave it as open as it is. */
+/** A message as a tree that unfolds row by row; a new message changes the values and keeps the unfolded rows. */
 export class MessageTree {
   readonly element = h("div", { class: "message-tree" });
   private readonly rows = new Map<string, Row>();
   private readonly opened = new Set<string>();
   private fields: readonly MessageField[] = [];
 
-  /** `plot` is offered for numbers, with the path of the field. */
+  /** `plot` is called with the path of a numeric field whose plot button is clicked. */
   constructor(private readonly plot: (path: string) => void) {}
 
   show(fields: readonly MessageField[]): void {
-    // What is not much is open from the start.
+    // Short messages are unfolded from the start.
     if (this.fields.length === 0 && fields.length <= 3) for (const { name } of fields) this.opened.add(name);
     this.fields = fields;
     this.fill(this.element, fields, "", null);

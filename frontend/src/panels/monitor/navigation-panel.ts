@@ -77,7 +77,7 @@ export class NavigationPanel implements Panel {
     this.enable();
   }
 
-  /** A button can be pressed when what it does can be done now. */
+  /** Enables the buttons whose commands are possible now. */
   private enable(): void {
     const { told } = this.state;
     const managers = told ? [told.navigation, told.localization].filter((state) => state !== "unknown") : [];

@@ -8,7 +8,7 @@ const BOX_HEIGHT = 28;
 const PADDING = 24;
 const TEXT_PX = 12;
 
-/** The graph as SVG: dragged, zoomed with the wheel, with one vertex chosen by a click or by keyboard. */
+/** The graph as SVG; it can be dragged, zoomed with the wheel, and one vertex chosen by mouse or keyboard. */
 export class NodeGraphDrawing {
   readonly element = h("div", { class: "graph-drawing", tabIndex: 0, role: "group" });
   private readonly scene = make("g", {});
@@ -16,7 +16,10 @@ export class NodeGraphDrawing {
   private graph: DrawnGraph = { vertices: [], edges: [] };
   private size: readonly [number, number] = [1, 1];
   private readonly pan: PanZoom;
-  /** What is shown, also when the graph or the panel changes: what can be read, all of it, or what the user moved to. */
+  /**
+   * The part of the graph in view, which is restored when the graph or the panel changes: a legible part, the whole
+   * graph, or what the user moved to.
+   */
   private shows: "legible" | "all" | "chosen" = "legible";
   private boxes: ReadonlyMap<string, PlacedBox> = new Map();
   private marked: string | null = null;
@@ -39,7 +42,7 @@ export class NodeGraphDrawing {
     }).observe(this.element);
   }
 
-  /** Draws a graph; the view stays where the user moved it. */
+  /** Draws a graph; a view that the user moved stays. */
   show(graph: DrawnGraph): void {
     this.graph = graph;
     if (this.measure) this.measure.font = `12px ${getComputedStyle(document.body).fontFamily}`;
@@ -54,7 +57,7 @@ export class NodeGraphDrawing {
     this.place();
   }
 
-  /** Marks a vertex, what it is connected with, and the edges between; null marks nothing. */
+  /** Marks a vertex, its neighbours and the edges between them; null marks nothing. */
   mark(id: string | null): void {
     this.marked = id;
     const { edges } = this.graph;
@@ -71,7 +74,7 @@ export class NodeGraphDrawing {
     }
   }
 
-  /** Shows all of it. */
+  /** Fits the whole graph into the panel. */
   fit(): void {
     if (this.element.clientWidth === 0) return;
     this.pan.show(...this.size);
@@ -86,7 +89,7 @@ export class NodeGraphDrawing {
     this.shows = "legible";
   }
 
-  /** The vertex with the most edges. */
+  /** Returns the box of the vertex with the most edges. */
   private busiest(): PlacedBox | undefined {
     const degrees = new Map<string, number>();
     for (const id of this.graph.edges.flatMap(({ from, to }) => [from, to])) degrees.set(id, (degrees.get(id) ?? 0) + 1);

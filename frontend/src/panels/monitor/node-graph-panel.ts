@@ -8,7 +8,7 @@ import { whenSeen } from "../../widgets/when-seen";
 import type { Panel } from "../panel";
 import { NodeGraphDrawing } from "./node-graph-drawing";
 
-/** The node graph, as rqt_graph shows it: publishers, topics and subscribers. */
+/** The node graph as rqt_graph shows it: publishers, topics and subscribers. */
 export class NodeGraphPanel implements Panel {
   readonly id = "graph";
   readonly icon = "graph";

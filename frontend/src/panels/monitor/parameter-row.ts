@@ -3,7 +3,10 @@ import type { ParameterKind, ParameterRow } from "../../protocol";
 import { parameterText, parameterValues } from "../../state/monitor/parameter-text";
 import { strings } from "../../strings";
 
-/** A parameter with the editor that suits its type. A value is sent when it is done, and is valid when the node confirms it. */
+/**
+ * A parameter with an editor for its type. A value is sent when its input is complete, and applies once the node
+ * confirms it.
+ */
 export class ParameterLine {
   readonly element: HTMLElement;
   private readonly editor: HTMLInputElement;
@@ -43,14 +46,14 @@ export class ParameterLine {
     this.show(row);
   }
 
-  /** Whether this line can show a row: an editor is made for one type. */
+  /** Whether this line can show a row: its editor suits one type and range only. */
   suits(row: ParameterRow): boolean {
     const facts = ({ kind, read_only, minimum, maximum, description }: ParameterRow): string =>
       JSON.stringify([kind, read_only, minimum, maximum, description]);
     return facts(row) === facts(this.row);
   }
 
-  /** The value that the node has; text that the user is just writing stays. */
+  /** Shows the value that the node has, except over text that the user is editing. */
   show(row: ParameterRow): void {
     this.row = row;
     if (row.kind === "bool") this.editor.checked = row.values[0] === "true";
@@ -58,7 +61,7 @@ export class ParameterLine {
     if (this.slider && document.activeElement !== this.slider) this.slider.value = row.values[0] ?? "0";
   }
 
-  /** Shows the outcome of setting the parameter: its present value, and the reason of a refusal. */
+  /** Shows the result of setting the parameter: its current value, and the reason for a refusal. */
   settled(successful: boolean, reason: string): void {
     this.problem.hidden = successful;
     this.problem.textContent = successful ? "" : reason || strings.monitor.parameters.refused;

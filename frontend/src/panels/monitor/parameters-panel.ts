@@ -8,7 +8,7 @@ import { whenSeen } from "../../widgets/when-seen";
 import type { Panel } from "../panel";
 import { ParameterLine } from "./parameter-row";
 
-/** The parameters of a node, to be edited, as rqt_reconfigure shows them. */
+/** The parameters of a node for editing, as in rqt_reconfigure. */
 export class ParametersPanel implements Panel {
   readonly id = "parameters";
   readonly icon = "parameters";

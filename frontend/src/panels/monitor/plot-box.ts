@@ -10,7 +10,7 @@ import { saveText } from "../../widgets/save-file";
 import { PlotChart, seriesColor } from "./plot-chart";
 import { PlotPicker } from "./plot-picker";
 
-/** One diagram with its series and their values. */
+/** One plot with its series and their values. */
 export class PlotBox {
   readonly element: HTMLElement;
   private readonly legend = h("div", { class: "plot-legend" });
@@ -45,7 +45,7 @@ export class PlotBox {
     this.show();
   }
 
-  /** Series, errors or settings changed. */
+  /** Updates after series, errors or settings have changed. */
   show(): void {
     const words = strings.monitor.plot;
     this.values.clear();
@@ -70,7 +70,7 @@ export class PlotBox {
     this.showValues();
   }
 
-  /** Opens the line to write a series into. */
+  /** Opens the input for adding a series. */
   pick(): void {
     if (!this.picker) {
       this.picker = new PlotPicker(
@@ -122,7 +122,7 @@ export class PlotBox {
     );
   }
 
-  /** The values shown, rounded outwards, to begin a fixed range with. */
+  /** Returns the range of the visible values, rounded, as the initial fixed range. */
   private shownRange(): [number, number] {
     const [from, to] = this.state.window ?? [0, 0];
     const shown = this.plot.series.flatMap(({ buffer }) => {

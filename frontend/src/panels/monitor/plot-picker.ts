@@ -10,11 +10,11 @@ const MOST_OFFERED = 200;
 interface Offer {
   text: string;
   note: string;
-  /** Whether choosing it ends the choice: it is a field, not a topic. */
+  /** Whether choosing it completes the choice: it is a field, not a topic. */
   final: boolean;
 }
 
-/** A line to write a topic and its field into, with all that fit offered below. */
+/** An input for a topic and its field, with a list of matching ones below. */
 export class PlotPicker {
   readonly element: HTMLElement;
   private readonly input = h("input", { class: "field", role: "combobox", aria: { autocomplete: "list" } });
@@ -41,7 +41,7 @@ export class PlotPicker {
     this.input.addEventListener("input", () => this.typed());
     this.input.addEventListener("keydown", (event) => this.keyed(event));
     this.input.addEventListener("blur", () => this.close());
-    // The list must not take the focus from the line.
+    // The list must not take the focus from the input.
     this.list.addEventListener("pointerdown", (event) => event.preventDefault());
     this.element = h("div", { class: "picker" }, this.input, this.list);
     topics.list(this, true);
@@ -80,7 +80,7 @@ export class PlotPicker {
     this.offer();
   }
 
-  /** The topic whose fields are to be offered: the one before the dot. */
+  /** Returns the topic whose fields are to be offered: the text before the dot. */
   private topicWritten(): string | null {
     const at = this.input.value.indexOf(".");
     return at > 0 ? this.input.value.slice(0, at).trim() : null;
@@ -132,7 +132,7 @@ export class PlotPicker {
     if (this.forget.length > 0) this.show();
   }
 
-  /** A field that is written out counts, offered or not: arrays have more elements than are offered. */
+  /** Accepts a field that is typed in full even if it is not offered: arrays have more elements than are listed. */
   private enter(): void {
     const field = parseField(this.input.value);
     const offer = this.offers[this.active];

@@ -3,7 +3,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { tell } from "../../widgets/dialog";
 
-/** Adds the obvious display of a topic, unless one shows it. */
+/** Adds the obvious display of a topic, unless an enabled display shows the topic already. */
 export function showTopic(session: Session, topic: string): void {
   const { configuration, displays } = session;
   if (displays.displays.some(({ enabled, rows }) => enabled && rows.text("", "Topic") === topic)) return;

@@ -1,21 +1,21 @@
 import type { TeleopState } from "../../state/monitor/teleop";
 import { STILL, stick } from "../../state/monitor/teleop-keys";
 
-/** Of the standard layout: LB and RB, one of which must be held to drive. */
+/** LB and RB in the standard layout; one of them must be held to drive. */
 const DEAD_MAN = [4, 5];
 
-/** Reads the first gamepad while it is wanted: the left stick drives, the right one moves sideways. */
+/** Reads the first gamepad while it is enabled: the left stick drives, the right one moves sideways. */
 export class TeleopGamepad {
   private frame = 0;
   private told: string | null = "";
 
-  /** `nameChanged` is called with the gamepad's name, null when there is none. */
+  /** `nameChanged` is called with the name of the gamepad, or null when there is none. */
   constructor(
     private readonly state: TeleopState,
     private readonly nameChanged: (name: string | null) => void,
   ) {}
 
-  /** Begins or ends to read it. */
+  /** Starts or stops reading the gamepad. */
   run(wanted: boolean): void {
     cancelAnimationFrame(this.frame);
     this.frame = 0;

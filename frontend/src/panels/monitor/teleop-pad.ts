@@ -5,7 +5,7 @@ import { strings } from "../../strings";
 
 const FASTER = 1.1;
 
-/** The square that drives: up is forward, left turns to the left. Keys drive while it has the focus. */
+/** The square for driving: up is forward, left turns to the left. Keys drive while it has the focus. */
 export class TeleopPad {
   readonly element: HTMLElement;
   private readonly knob = h("div", { class: "pad-knob" });
@@ -30,7 +30,7 @@ export class TeleopPad {
     element.addEventListener("keyup", (event) => {
       if (this.held.delete(event.code)) this.moveKeys();
     });
-    // Whoever looks elsewhere lets go of everything.
+    // Losing the focus must stop the robot.
     element.addEventListener("blur", () => this.letGo());
     window.addEventListener("blur", () => this.letGo());
     window.addEventListener("pagehide", () => this.letGo());
@@ -71,7 +71,7 @@ export class TeleopPad {
       Math.min(1, Math.max(-1, (1 - (2 * (value - start)) / length) / 0.84));
     const forward = part(event.clientY, box.top, box.height);
     const left = part(event.clientX, box.left, box.width);
-    // Pressing the middle means nothing yet: a hand rests there.
+    // Leave a dead zone in the middle: pressing there must not move the robot yet.
     const motion = { ...STILL, x: dead(forward), [event.shiftKey ? "y" : "turn"]: dead(left) };
     this.state.move("pad", motion);
   }

@@ -22,7 +22,7 @@ export class TeleopPanel implements Panel {
   private readonly gamepad: TeleopGamepad;
   private readonly aim = h("div", { class: "teleop-aim", aria: { live: "polite" } });
   private readonly velocity = h("output", { class: "teleop-velocity numeric" });
-  /** Both are laid out and one is seen: a click must not move what is clicked. */
+  /** Both texts are laid out and one is visible, so that a click on the pad does not move the pad. */
   private readonly focus = {
     active: h("span", {}, strings.monitor.teleop.active),
     inactive: h("span", {}, strings.monitor.teleop.inactive),

@@ -7,7 +7,7 @@ import { whenSeen } from "../../widgets/when-seen";
 import type { Panel } from "../panel";
 import { TopicLine } from "./topic-row";
 
-/** The topics, as rqt_topic shows them: figures of ticked ones, the last message of opened ones. */
+/** The topics as in rqt_topic: rates of ticked topics, and the last message of open ones. */
 export class TopicsPanel implements Panel {
   readonly id = "topics";
   readonly icon = "topics";
@@ -114,7 +114,7 @@ export class TopicsPanel implements Panel {
     for (const [name, line] of this.lines) line.showTraffic(this.state.traffic.get(name));
   }
 
-  /** Up and down go from topic to topic. */
+  /** Moves to the previous or next topic with the arrow keys. */
   private keyed(event: KeyboardEvent): void {
     if (event.key !== "ArrowDown" && event.key !== "ArrowUp") return;
     const stops = [...this.body.querySelectorAll<HTMLElement>(":scope > tr[data-topic] .expander")];
