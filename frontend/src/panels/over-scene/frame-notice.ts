@@ -7,14 +7,17 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 
 const ROBOT_MODEL = "rviz_default_plugins/RobotModel";
-/** A frame that comes so soon is not missed, ms: localisation takes its time. */
+/** The notice waits so long (ms) for the frame: localization takes a moment to publish it. */
 const PATIENCE_MS = 3000;
 
-/** Over the scene while the Fixed Frame does not exist: what is missing, and a button for a frame that does, with the robot. */
+/**
+ * The notice over the scene while the Fixed Frame does not exist: its name, and a button that uses an existing frame
+ * and adds the robot.
+ */
 export class FrameNotice {
   readonly element = h("div", { class: "line-notice failed", role: "alert", data: { notice: "frame" } });
   private timer: ReturnType<typeof setTimeout> | undefined;
-  /** The frame that the notice names or named. */
+  /** The missing frame for which the notice was last shown or scheduled. */
   private told: string | null = null;
   private robot: TopicChoice | null = null;
 

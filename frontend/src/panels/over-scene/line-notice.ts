@@ -4,12 +4,12 @@ import type { Reduced } from "../../state/slow-line";
 import type { SlowCause } from "../../state/slowness";
 import { strings } from "../../strings";
 
-/** How long the notice that the page is slow is shown. */
+/** ms for which the notice that the page is slow is shown. */
 const TOLD_MS = 15_000;
 
 /**
- * Over the scene while not all can be shown: the thinned data and its rate, the slow part, and the remedy. That the
- * page is slow is shown once, by itself.
+ * The notice over the scene while data is thinned: the data and its rate, the slow part, and the remedy. A notice that
+ * the page itself is slow is shown only once, for a while.
  */
 export class LineNotice {
   readonly element = h("div", { class: "line-notice", role: "status" });
@@ -39,7 +39,7 @@ export class LineNotice {
     this.element.replaceChildren(h("strong", {}, words.slow[cause]), h("div", {}, words.slowHints[cause]), ...lines);
   }
 
-  /** Whether a light was left to the page, which takes the camera's where it is slow. */
+  /** Whether any light is set to Automatic, which means the camera's light where the page is slow. */
   private get isLitAutomatically(): boolean {
     const { globalOptions, displays } = this.session.displays;
     return [globalOptions, ...displays.map(({ rows }) => rows)].some((rows) => rows.text("", "Light") === "Automatic");
@@ -59,7 +59,10 @@ export class LineNotice {
   }
 }
 
-/** The cause to show. The notice about a slow page stays for a while after the page has recovered, unless something is reduced. */
+/**
+ * Returns the cause to show. The notice about a slow page stays for a while after the page has recovered, unless data
+ * is reduced.
+ */
 export function causeOf(cause: SlowCause, isTold: boolean, reduced: number): SlowCause {
   return isTold && reduced === 0 ? "page" : cause;
 }

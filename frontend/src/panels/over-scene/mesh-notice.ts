@@ -3,10 +3,10 @@ import { bytesText } from "../../scene/meshes/mesh-error";
 import type { MeshLoad, MeshProgress } from "../../state/mesh-progress";
 import { strings } from "../../strings";
 
-/** More are counted. */
+/** The maximum number of files listed; the others are counted. */
 const MOST_LINES = 4;
 
-/** Over the scene while mesh files take longer than a moment: which, and how far they are. */
+/** The notice over the scene while mesh files take longer than a moment: the files and their progress. */
 export class MeshNotice {
   readonly element = h("div", { class: "line-notice", role: "status", data: { notice: "meshes" } });
 
@@ -25,7 +25,7 @@ export class MeshNotice {
   }
 }
 
-/** The progress of a file: bytes of bytes, then that it is read. */
+/** Returns the progress of a file: bytes of the total, or that it is being read. */
 export function progressText({ bytes, total, stage }: Readonly<MeshLoad>): string {
   const words = strings.meshes.progress;
   if (stage === "reading") return words.reading;

@@ -6,7 +6,10 @@ import { strings } from "../../strings";
 /** How long the notice is shown, ms. */
 const TOLD_MS = 15_000;
 
-/** Over the scene for a while when the description of one node takes the place of another's: what the display's status says. */
+/**
+ * The notice over the scene for a while after one node's description replaced another's, with the text of the display's
+ * status.
+ */
 export class OwnerNotice {
   readonly element = h("div", { class: "line-notice", role: "status", data: { notice: "owner" } });
   private readonly told = new Map<string, string>();
@@ -19,7 +22,10 @@ export class OwnerNotice {
     });
   }
 
-  /** A warning about its topic is what a RobotModel with a robot has while several descriptions come that are not the same. */
+  /**
+   * Shows a warning about a RobotModel's topic. With a robot, such a warning means that several different descriptions
+   * are published.
+   */
   private look({ id, name, status }: DisplayState): void {
     if ((this.session.robots.get(id)?.links.length ?? 0) === 0) return;
     const text = status.find((row) => row.name === "Topic" && row.level === "warn")?.text ?? "";

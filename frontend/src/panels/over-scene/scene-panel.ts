@@ -27,9 +27,9 @@ export class ScenePanel implements Panel {
   readonly id = "scene";
   readonly icon = "cube";
   readonly element: HTMLElement;
-  /** Where the canvas goes. */
+  /** The element that holds the canvas. */
   readonly container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
-  /** The scene and its overlays: the content of full screen. */
+  /** The scene and its overlays, which full screen shows. */
   readonly box: HTMLElement;
   private readonly column = new CardColumn();
   private readonly notices = h("div", { class: "notices" });
@@ -65,7 +65,7 @@ export class ScenePanel implements Panel {
     this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);
     const update = (): void => {
       const awaited = session.displays.displays.some(({ cls, enabled }) => enabled && cls.endsWith("/RobotModel"));
-      // Where a description is broken the banner says why none comes.
+      // If a description has an error, the banner explains why no robot appears.
       this.waiting.hidden = session.robot !== null || !awaited || banner.tellsError;
     };
     session.diagnosticsChanged.on(update);
@@ -74,7 +74,7 @@ export class ScenePanel implements Panel {
     session.displays.enabledChanged.on(update);
   }
 
-  /** Connects the cards over the scene with it. */
+  /** Connects the cards with the scene below them. */
   lieOver(scene: Below): void {
     this.column.lieOver(scene);
     new ResizeObserver(() => scene.makeRoomAbove(this.notices.offsetHeight > 0 ? this.notices.offsetTop + this.notices.offsetHeight : 0)).observe(this.notices);

@@ -9,7 +9,7 @@ import { SpawnDialog } from "./spawn-dialog";
 
 const NOTICE_MS = 8000;
 
-/** Play, pause, step, reset, and how fast time passes: over the scene while there is a simulation. */
+/** The toolbar over the scene while there is a simulation: play, pause, step, reset, and the real-time factor. */
 export class SimulationBar {
   readonly element: HTMLElement;
   private readonly play: HTMLButtonElement;

@@ -6,7 +6,9 @@ import type { SimulationState } from "../../state/simulation";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
 
-/** Puts a model into the world: one of those on the search path, or a file; it stays open until the model exists. */
+/**
+ * The dialog that adds a model to the world, from the search path or from a file; it stays open until the model exists.
+ */
 export class SpawnDialog {
   private readonly dialog: Dialog;
   private readonly address = h("input", { class: "field", aria: { label: strings.simulation.address } });
@@ -54,14 +56,14 @@ export class SpawnDialog {
     modelling.askModels();
   }
 
-  /** Removes the message about another address. */
+  /** Removes the message about the previous address. */
   private edited(): void {
     this.fill();
     this.dialog.ready = this.address.value.trim() !== "";
     this.problem.textContent = "";
   }
 
-  /** The models that have what is typed in their names, until one of them, or a path, is chosen. */
+  /** Lists the models whose names contain the typed text; all models once one of them is chosen. */
   private fill(): void {
     const words = strings.simulation;
     const typed = this.address.value.trim();

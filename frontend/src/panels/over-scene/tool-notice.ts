@@ -3,7 +3,7 @@ import type { ToolsState } from "../../state/tools";
 
 const TOLD_MS = 4000;
 
-/** Over the scene for some seconds: why the tool in hand did not execute its request. */
+/** The notice over the scene, for some seconds, that explains why the active tool did not do what was requested. */
 export class ToolNotice {
   readonly element = h("div", { class: "line-notice", role: "status", data: { notice: "tool" } });
   private timer: ReturnType<typeof setTimeout> | undefined;

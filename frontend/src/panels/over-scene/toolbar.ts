@@ -5,16 +5,16 @@ import type { ToolState, ToolsState } from "../../state/tools";
 import { strings } from "../../strings";
 import { openMenu } from "../../widgets/menu";
 
-/** Shows all of the robot, or of the selection. */
+/** The key that fits the whole robot, or the selection, into the view. */
 export const FIT_KEY = "Shift F";
 
-/** The name of a tool in the user's language. */
+/** Returns the name of a tool in the user's language. */
 export function toolName({ cls, name }: Pick<ToolState, "cls" | "name">): string {
   const names: Readonly<Record<string, string>> = strings.tools.names;
   return names[cls] ?? name;
 }
 
-/** RViz's toolbar above the scene: the tools of the file, in their order. */
+/** RViz's toolbar above the scene, with the tools of the file in their order. */
 export class Toolbar {
   readonly element = h("div", { class: "scene-tools", role: "toolbar", aria: { label: strings.tools.label } });
   private readonly buttons = new Map<ToolState, HTMLButtonElement>();
@@ -23,7 +23,7 @@ export class Toolbar {
     private readonly tools: ToolsState,
     private readonly fit: () => void,
     private readonly showKeys: () => void,
-    /** The elements right of the tools. */
+    /** The button to the right of the tools. */
     private readonly talk: HTMLElement,
   ) {
     tools.listChanged.on(() => this.build());
@@ -79,7 +79,7 @@ export class Toolbar {
     }
   }
 
-  /** Arrow keys go from button to button, as in any toolbar. */
+  /** Moves to the next or previous button with the arrow keys, as in any toolbar. */
   private keyed(event: KeyboardEvent): void {
     const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
     if (step === 0) return;
