@@ -7,12 +7,12 @@ import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 import { colorOf, poseAt } from "./styles";
 
-/** x y z of both ends of each of the twelve edges of a cube of one metre. */
+/** The x y z of both ends of the twelve edges of a unit cube. */
 const EDGES = new EdgesGeometry(new BoxGeometry(1, 1, 1)).getAttribute("position").array as Float32Array;
-/** Height of a line of text, m: a third of the box, in these bounds. */
+/** The minimum and maximum height of a line of text, m; between them it is a third of the box. */
 const TEXT = [0.05, 0.5] as const;
 
-/** The displays of vision_msgs_rviz_plugins: boxes, or only their edges, with the colours of their classes. */
+/** The displays of vision_msgs_rviz_plugins: boxes or their edges only, in the colours of their classes. */
 export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
   private readonly boxes = new CopyBatch(this.root, cubeGeometry());
   private readonly edges = new WideLines();
@@ -43,7 +43,7 @@ export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
     const { rows } = this.context.display;
     const onlyEdges = rows.bool(false, "Only Edge");
     const alpha = rows.number(1, "Alpha");
-    // Boxes without classes are white, for the one colour of the display.
+    // Boxes without classes arrive in white and get the display's colour.
     const own = rows.text("", "Color") === "" ? null : colorOf(rows, "#ffff00", "Color");
     const [placed] = this.placed();
     const content = placed?.content;

@@ -10,7 +10,7 @@ import { seenThrough } from "../images/seen-through";
 import { dataPose } from "../pose";
 import type { Drawing, DrawingContext, DrawnScene } from "./drawing";
 
-/** rviz_default_plugins/Camera: the scene as a camera sees it and the camera's image, in a panel of its own. */
+/** rviz_default_plugins/Camera: a panel with the scene as a camera sees it, combined with the camera's image. */
 export class CameraDrawing implements Drawing {
   readonly root = new Group();
   private readonly image = new ImageCanvas();
@@ -57,7 +57,7 @@ export class CameraDrawing implements Drawing {
   }
 
   update(): void {
-    // It has no place in the scene; `drawn` draws it.
+    // The display draws nothing into the scene; `drawn` draws the panel.
   }
 
   drawn(scene: DrawnScene): void {
@@ -103,7 +103,10 @@ export class CameraDrawing implements Drawing {
     this.scene.dispose();
   }
 
-  /** Drawing the scene twice takes its time: at most half of it, and an omitted image is drawn later. */
+  /**
+   * Returns whether to draw now. Drawing the scene a second time may take at most half of the time; a skipped image is
+   * drawn later.
+   */
   private isTurn(): boolean {
     const wait = this.nextAt - performance.now();
     if (wait <= 0) return true;
@@ -112,7 +115,7 @@ export class CameraDrawing implements Drawing {
     return false;
   }
 
-  /** Image, scene, image. */
+  /** Draws the background image, the scene, and the overlay image. */
   private compose(scene: DrawnScene, zoom: readonly [number, number], width: number, height: number): void {
     const { rows } = this.context.display;
     const where = rows.text("background and overlay", "Image Rendering");

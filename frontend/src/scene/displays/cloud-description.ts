@@ -3,7 +3,10 @@ import type { Described } from "../picking";
 
 const DIGITS = 6;
 
-/** The rows of RViz's Selection panel for a point: its position in the message's frame, then its other fields, numbered. */
+/**
+ * Returns the rows of RViz's Selection panel for a point: its position in the message's frame, then its other fields,
+ * numbered.
+ */
 export function described(
   index: number,
   cloud: string,

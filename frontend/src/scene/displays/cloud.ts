@@ -10,11 +10,11 @@ import { described } from "./cloud-description";
 import type { Drawing, DrawingContext } from "./drawing";
 import { PointFieldStore } from "./point-fields";
 
-/** What a pointer covers around it, as a part of half the scene's height: some 4 pixels of a scene of usual size. */
+/** The radius around the pointer that picks points, as a share of half the scene's height: about 4 pixels. */
 const POINTER = 0.012;
-/** Of a rectangle that holds more points than these only so many are selected. */
+/** The maximum number of points that a rectangle selects. */
 const MOST_SELECTED = 1000;
-/** Side of the mark of a selected point of the style Points, m. */
+/** The side of the mark around a selected point of the style Points, m. */
 const SMALLEST_MARK = 0.004;
 
 /** The points of one message. */
@@ -22,13 +22,13 @@ interface Cloud {
   data: DisplayData;
   batch: PointBatch;
   perDepth: number;
-  /** One of so many points was sent; 1 for all of them. */
+  /** Every `step`-th point was sent; 1 if all were. */
   step: number;
 }
 
 /**
  * rviz_default_plugins/PointCloud2, LaserScan, DepthCloud, FluidPressure, Illuminance, RelativeHumidity, Temperature.
- * Messages that are still shown because of the Decay Time are batches of their own.
+ * Each message that Decay Time keeps visible has a batch of its own.
  */
 export class CloudDrawing implements Drawing {
   readonly root = new Group();
@@ -89,7 +89,8 @@ export class CloudDrawing implements Drawing {
   pick(ray: Raycaster): Hit | null {
     const [origin, direction] = [new Vector3(), new Vector3()];
     const inverse = new Matrix4();
-    // Half the height of the visible area, m: a metre away, or anywhere where the view is parallel.
+    // Half the height of the visible area, m: at a distance of one metre, or at any distance for an orthographic
+    // camera.
     const { elements } = this.context.camera().projectionMatrix;
     const pointer = POINTER / elements[5];
     const parallel = elements[15] === 1;
@@ -128,7 +129,7 @@ export class CloudDrawing implements Drawing {
     if (!found) return null;
     const { cloud, cloudKey, index } = found;
     const position = cloud.batch.positions.subarray(index * 3, index * 3 + 3);
-    // Of a cloud thinned for a slow line the server counts all points.
+    // The server numbers the points of the full cloud, also when the cloud is thinned for a slow connection.
     const number = index * cloud.step;
     return described(number, cloudKey, position, this.fields.of(cloudKey, number));
   }
@@ -186,7 +187,7 @@ export class CloudDrawing implements Drawing {
     return cloud && index < cloud.batch.count ? { cloud, cloudKey, index } : null;
   }
 
-  /** Boxes around the selected points. */
+  /** Draws boxes around the selected points. */
   private mark(): void {
     const middles = [...this.selected].flatMap((key) => this.placeOf(key)?.toArray() ?? []);
     const { style, size } = this.look({ perDepth: 0 });
@@ -195,7 +196,7 @@ export class CloudDrawing implements Drawing {
   }
 }
 
-/** Least and largest corner of all points in the fixed frame, m; null without any. */
+/** Returns the minimum and maximum corner of all points in the fixed frame, m; null if there are none. */
 function bounds(clouds: readonly Cloud[]): [number[], number[]] | null {
   const least = new Vector3(Infinity, Infinity, Infinity);
   const largest = least.clone().negate();

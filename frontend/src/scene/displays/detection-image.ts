@@ -3,7 +3,7 @@ import type { ImageBoxes } from "../../protocol";
 import type { DrawingContext } from "./drawing";
 import { ImageDrawing } from "./image";
 
-/** Pixels of the page: lines and texts are as large whatever the size of image and panel. */
+/** CSS pixels: lines and texts have the same size whatever the size of the image and the panel. */
 const LINE = 2;
 const TEXT = 16;
 const MOST_KEPT = 10;
@@ -11,9 +11,9 @@ const MOST_KEPT = 10;
 /** linkwright/Detections: an image with boxes over it. */
 export class DetectionImageDrawing extends ImageDrawing {
   private readonly overlay = document.createElement("canvas");
-  /** The boxes of images that are yet to be painted, or are, by their stamps. */
+  /** The boxes of images that are shown or not painted yet, by their stamps. */
   private readonly found = new Map<number, ImageBoxes>();
-  /** Boxes of an image that is not there any more. */
+  /** The boxes of an image that is no longer available. */
   private loose: ImageBoxes | null = null;
   private shown: string[] = [];
 
@@ -50,7 +50,7 @@ export class DetectionImageDrawing extends ImageDrawing {
     return { ...super.inspect(), boxes: [...this.shown] };
   }
 
-  /** The image is on the canvas. */
+  /** Called when a new image is on the canvas. */
   protected override painted(): void {
     this.draw();
   }
@@ -84,7 +84,7 @@ export class DetectionImageDrawing extends ImageDrawing {
   }
 }
 
-/** One box, with its text above its upper left corner, or below it where there is no room. */
+/** Draws a box, with its text above the upper left corner, or inside the box if there is no room above. */
 function drawBox(context: CanvasRenderingContext2D, { boxes, colors }: ImageBoxes, i: number, scale: number, text: string): void {
   const [x = 0, y = 0, width = 0, height = 0, turn = 0] = boxes.subarray(5 * i, 5 * i + 5);
   const [red = 0, green = 0, blue = 0] = colors.subarray(3 * i, 3 * i + 3);
@@ -101,7 +101,7 @@ function drawBox(context: CanvasRenderingContext2D, { boxes, colors }: ImageBoxe
     const top = y - height / 2 < line ? -height / 2 : -height / 2 - line;
     context.fillStyle = color;
     context.fillRect(-width / 2, top, context.measureText(text).width + line / 2, line);
-    // Dark on light colours, light on dark ones.
+    // Choose the text colour for contrast: dark on light colours, light on dark ones.
     context.fillStyle = 0.3 * red + 0.59 * green + 0.11 * blue > 110 ? "#101010" : "#ffffff";
     context.textBaseline = "middle";
     context.fillText(text, -width / 2 + line / 4, top + line / 2);

@@ -1,4 +1,4 @@
-/** The shape of a grid; lengths in metres. */
+/** The shape of a grid; lengths in m. */
 export interface GridShape {
   cells: number;
   normalCells: number;
@@ -7,8 +7,8 @@ export interface GridShape {
 }
 
 /**
- * Both ends (x y z, x y z) of every line of a grid centred on the origin, as RViz's Grid builds it: `normalCells` + 1
- * layers of `cells` x `cells` cells, joined by lines along the normal.
+ * Returns both ends (x y z, x y z) of every line of a grid centred on the origin, as in RViz's Grid: `normalCells` + 1
+ * layers of `cells` x `cells` cells, connected by lines along the normal.
  */
 export function gridLines({ cells, normalCells, cellSize, plane }: GridShape): Float32Array {
   const points: number[] = [];
@@ -37,8 +37,8 @@ export function gridLines({ cells, normalCells, cellSize, plane }: GridShape): F
 }
 
 /**
- * The same lines, each as many pieces end to end. A line with an end behind the camera is left out whole by Chromium's
- * software renderer (SwiftShader), which would take the lines at the viewer's feet; of pieces only the nearest goes.
+ * Splits lines into a number of pieces each. Chromium's software renderer (SwiftShader) drops a line with an end behind
+ * the camera, and with it the lines at the viewer's feet; of a split line it drops only the nearest piece.
  */
 export function inPieces(lines: Float32Array, pieces: number): Float32Array {
   const found = new Float32Array(lines.length * pieces);
@@ -56,7 +56,10 @@ export function inPieces(lines: Float32Array, pieces: number): Float32Array {
   return found;
 }
 
-/** The colours r g b a of ends of lines around the origin, which fade towards the farthest: a ground does not end. */
+/**
+ * Returns the colours (r g b a) of line ends around the origin, which fade out with the distance, as the ground has no
+ * edge.
+ */
 export function shadesOf(ends: Float32Array): Float32Array {
   const shades = new Float32Array((ends.length / 3) * 4).fill(1);
   const far = (i: number): number => Math.hypot(ends[i] ?? 0, ends[i + 1] ?? 0, ends[i + 2] ?? 0);

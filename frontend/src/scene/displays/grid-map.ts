@@ -5,7 +5,7 @@ import { joined, ThinLines } from "../objects/thin-lines";
 import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 
-/** grid_map_rviz_plugin/GridMap: a surface through the middles of cells, and lines between them. */
+/** grid_map_rviz_plugin/GridMap: a surface through the centres of the cells, and lines between them. */
 export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
   private readonly lines = new ThinLines();
   private readonly surfaces = new Map<GridSurface, Mesh<BufferGeometry, MeshLambertMaterial>>();
@@ -81,7 +81,7 @@ function colorsOf({ colors }: GridSurface): Uint8Array {
   return result;
 }
 
-/** Two triangles between four cells that exist, one between three of them. */
+/** Returns the triangles: two between four existing cells, one between three. */
 function trianglesOf(content: GridSurface): number[] {
   const { rows, columns } = content;
   const result: number[] = [];

@@ -5,7 +5,7 @@ import { framePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 import { gridLines, inPieces, shadesOf } from "./grid-lines";
 
-/** As many cells have lines of a piece for each; more are not made of more pieces. */
+/** The maximum number of pieces of a line; up to it, a line has one piece for each cell. */
 const MOST_PIECES = 20;
 
 /** rviz_default_plugins/Grid */
@@ -65,7 +65,7 @@ export class GridDrawing implements Drawing {
     if (this.frame === FIXED_FRAME || this.frame === displays.fixedFrame) {
       this.root.matrix.identity();
     } else {
-      // Without a transform RViz leaves the grid where it was.
+      // Without a transform, RViz leaves the grid in place.
       framePose(frames, frames.row(this.frame), this.root.matrix);
     }
     this.root.matrixWorldNeedsUpdate = true;

@@ -6,13 +6,13 @@ import { OwnPanel } from "../images/own-panel";
 import { ImageCanvas } from "../images/image-canvas";
 import type { Drawing, DrawingContext } from "./drawing";
 
-/** rviz_default_plugins/Image: nothing in the scene, a panel of its own with the image. */
+/** rviz_default_plugins/Image: a panel of its own with the image, and nothing in the scene. */
 export class ImageDrawing implements Drawing {
   readonly root = new Group();
   readonly isElsewhere = true;
   private readonly image: ImageCanvas;
   protected readonly panel: OwnPanel;
-  /** When the image on the canvas was taken, s. */
+  /** The stamp of the image on the canvas, s. */
   protected imageStamp = 0;
   private frame: ImageFrame | null = null;
   private readonly resizing = new ResizeObserver(() => {
@@ -57,7 +57,7 @@ export class ImageDrawing implements Drawing {
   }
 
   update(): void {
-    // It has no place in the scene.
+    // The display draws nothing into the scene.
   }
 
   inspect(): object {
@@ -71,12 +71,12 @@ export class ImageDrawing implements Drawing {
     };
   }
 
-  /** The image has come onto the canvas, or the panel has another size. */
+  /** Called when a new image is on the canvas, or the panel was resized. */
   protected painted(): void {
-    // Nothing is drawn over it.
+    // An image alone has no overlay.
   }
 
-  /** Pixels of the message's image, 0 while there is none. */
+  /** The size of the message's image in pixels; 0 while there is none. */
   protected get size(): { width: number; height: number } {
     const { canvas } = this.image;
     return { width: this.frame?.width || canvas.width, height: this.frame?.height || canvas.height };
@@ -88,7 +88,7 @@ export class ImageDrawing implements Drawing {
     this.panel.close();
   }
 
-  /** Shows the reason why there is no image, as a rule from the display's status. */
+  /** Shows why there is no image, usually with a text of the display's status. */
   private explain(): void {
     const { none, unreadable } = strings.images;
     const cause = this.context.display.troubles[0]?.text;
@@ -96,7 +96,7 @@ export class ImageDrawing implements Drawing {
     else this.panel.say(this.state === "unreadable" ? unreadable : none, cause);
   }
 
-  /** Tells the server the panel's size, since more pixels need not be sent. */
+  /** Sends the panel's size to the server, which need not send more pixels than that. */
   private tellSize(): void {
     const { display, session } = this.context;
     const pixels = (points: number): number => Math.ceil(points * window.devicePixelRatio);

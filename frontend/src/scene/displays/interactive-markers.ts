@@ -10,7 +10,7 @@ import type { Described, Hit, Interaction, ScenePointer } from "../picking";
 import { poseMatrix } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
-/** Poses told to the server while something is dragged, at most one in so many milliseconds. */
+/** ms; while a marker is dragged, its pose is sent at most once in this interval. */
 const FEEDBACK_MS = 33;
 
 /** rviz_default_plugins/InteractiveMarkers */
@@ -23,7 +23,7 @@ export class InteractiveMarkersDrawing implements Drawing {
   constructor(private readonly context: DrawingContext) {}
 
   propertiesChanged(): void {
-    // Read again in update().
+    // Properties are read in update().
   }
 
   dataChanged(data: DisplayData): void {

@@ -10,22 +10,22 @@ import type { Drawing, DrawingContext } from "./drawing";
 
 interface Shown {
   marker: MarkerShape;
-  /** Of the marker in its frame, or in the fixed frame. */
+  /** The pose of the marker in its frame, or in the fixed frame. */
   pose: Matrix4;
   object: MarkerObject | null;
-  /** What a ray meets of a marker that is drawn with others in one call; kept, for the mouse asks with each step. */
+  /** The surfaces for ray tests of a marker that is drawn in a batch; cached, because every mouse move tests them. */
   surfaces: Object3D[] | null;
 }
 
 /** rviz_default_plugins/Marker and MarkerArray */
 export class MarkersDrawing implements Drawing {
   readonly root = new Group();
-  /** Null until there is a marker for them: of a file's hundred such displays few are ever sent one. */
+  /** Null until a marker needs it: of a hundred such displays in a file, few ever receive one. */
   private solids: SolidMarkers | null = null;
   private readonly shown = new Map<string, Shown>();
   private hidden = new Set<string>();
   private solidsStale = false;
-  /** Markers that are drawn with others in one call have objects for their outlines, which nothing else draws. */
+  /** Objects for outlining the markers that are drawn in batches; nothing else draws these objects. */
   private readonly outlined = new Map<string, readonly Object3D[]>();
 
   constructor(private readonly context: DrawingContext) {
@@ -140,7 +140,7 @@ export class MarkersDrawing implements Drawing {
     this.outlined.clear();
   }
 
-  /** The surfaces that a ray can hit. */
+  /** Returns the surfaces that a ray can hit. */
   private surfacesOf(shown: Shown): Object3D[] {
     if (shown.object) return [shown.object.root];
     if (shown.marker.frame !== "") return this.makeSurfaces(shown); // it moves
@@ -182,7 +182,7 @@ export class MarkersDrawing implements Drawing {
     this.shown.delete(id);
   }
 
-  /** Writes the marker's pose in the fixed frame; false where its frame has no transform. */
+  /** Computes the marker's pose in the fixed frame; returns false if its frame has no transform. */
   private place(marker: MarkerShape, own: Matrix4, pose: Matrix4): boolean {
     if (marker.frame === "") {
       pose.copy(own);
@@ -207,7 +207,7 @@ export class MarkersDrawing implements Drawing {
   }
 }
 
-/** Whether a mesh has only moved: it need not be made, and loaded, again. */
+/** Whether a mesh marker only moved, so that its mesh need not be loaded again. */
 function looksSame(one: MarkerShape, other: MarkerShape): boolean {
   const file = one.mesh?.url ?? null;
   return (

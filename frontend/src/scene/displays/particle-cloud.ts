@@ -7,13 +7,13 @@ import type { DrawingContext } from "./drawing";
 import { flatArrows } from "./flat-arrows";
 import { colorOf, poseAt } from "./styles";
 
-/** Of an arrow, as shares of its shaft's length; axes are as thick as the shaft. */
+/** Dimensions of an arrow relative to the length of its shaft; axes are as thick as the shaft. */
 const SHAFT_DIAMETER = 0.0435;
 const HEAD_LENGTH = 0.3043;
 const HEAD_DIAMETER = 0.1304;
 const SEGMENTS = 8;
 
-/** nav2_rviz_plugins/ParticleCloud: poses that are the larger, and the higher, the likelier they are. */
+/** nav2_rviz_plugins/ParticleCloud: poses, drawn larger and higher the likelier they are. */
 export class ParticleCloudDrawing extends ContentDrawing<"particle_marks"> {
   private readonly lines = new ThinLines();
   private readonly arrows = new ArrowBatch(this.root, SEGMENTS);
@@ -71,7 +71,9 @@ function arrowOf(length: number): { shaftLength: number; shaftDiameter: number; 
   };
 }
 
-/** Poses as high as they are likely, as nav2 draws them: what is known of their own height is that they are on the ground. */
+/**
+ * Raises poses by their weights, as nav2 draws them. Their own height carries no information: they are on the ground.
+ */
 function raised(poses: Float32Array, weights: Float32Array, scale: number): Float32Array {
   const result = poses.slice();
   weights.forEach((weight, i) => (result[i * 7 + 2] = weight * scale));

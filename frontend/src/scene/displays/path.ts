@@ -9,7 +9,7 @@ import { colorOf, poseAt } from "./styles";
 
 const SEGMENTS = 10;
 
-/** rviz_default_plugins/Path: lines through the poses of each path, and the poses themselves. */
+/** rviz_default_plugins/Path: lines through the poses of each path, and optionally the poses themselves. */
 export class PathDrawing extends ContentDrawing<"pose_marks"> {
   private readonly thin = new ThinLines();
   private readonly wide = new WideLines();

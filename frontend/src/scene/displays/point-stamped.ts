@@ -7,7 +7,7 @@ import { colorOf } from "./styles";
 
 const SEGMENTS = 16;
 
-/** rviz_default_plugins/PointStamped: balls where the points were; what RViz calls their radius it draws as their size. */
+/** rviz_default_plugins/PointStamped: spheres at the points; like RViz, this uses the property Radius as a diameter. */
 export class PointStampedDrawing extends ContentDrawing<"point_marks"> {
   private readonly balls = new CopyBatch(this.root, ballGeometry(SEGMENTS));
 

@@ -7,7 +7,7 @@ import type { DrawingContext } from "./drawing";
 import { flatArrows } from "./flat-arrows";
 import { colorOf, poseAt } from "./styles";
 
-/** Thousands of poses are particles: few corners will do. */
+/** A low number of segments, because thousands of poses are particles. */
 const SEGMENTS = 8;
 
 /** rviz_default_plugins/PoseArray */

@@ -9,7 +9,7 @@ import { ContentDrawing, type Placed } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 import { colorOf, covarianceStyle, poseArrow, poseAt } from "./styles";
 
-/** rviz_default_plugins/Pose, PoseWithCovariance and Odometry: poses as arrows or axes, and how uncertain they are. */
+/** rviz_default_plugins/Pose, PoseWithCovariance and Odometry: poses as arrows or axes, with their covariances. */
 export class PosesDrawing extends ContentDrawing<"pose_marks"> {
   private readonly arrows = new ArrowBatch(this.root);
   private readonly axes = new AxesBatch(this.root);
@@ -39,7 +39,7 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
     return found ? placeOf(found) : null;
   }
 
-  /** A pose as RViz's Selection panel shows it: in the frame it was given in. */
+  /** Returns a pose as in RViz's Selection panel: in the frame of its message. */
   describe(key: string): Described | null {
     const found = this.drawnContents.find((each) => each.key === key);
     if (!found) return null;
@@ -72,7 +72,7 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
 
   protected arrange(): void {
     const { rows } = this.context.display;
-    // Odometry has the sizes below Shape.
+    // In Odometry, the sizes are below Shape.
     const below = rows.find("Shape")?.children.length ? ["Shape"] : [];
     const asArrows = rows.text("Arrow", "Shape") === "Arrow";
     const shape = poseArrow(rows, below);
@@ -102,7 +102,7 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
   }
 }
 
-/** The position of the one pose of a content. */
+/** Returns the position of the single pose of a content. */
 function placeOf({ content, pose }: Placed<PoseMarks>): Vector3 {
   return new Vector3().setFromMatrixPosition(poseAt(content.poses, 0, new Matrix4()).premultiply(pose));
 }

@@ -9,9 +9,9 @@ import { shade } from "../studio-light";
 import type { Described, Hit, SelectionBox } from "../picking";
 import type { Drawing, DrawingContext } from "./drawing";
 
-/** A new robot replaces the old one when its meshes are loaded, or after this long without them. */
+/** A new robot replaces the old one once its meshes are loaded, or after this time without them. */
 const SWAP_WITHIN_MS = 300;
-/** Links that are nearer to each other than this are in one place: m, and parts of quaternions. */
+/** Links closer than this count as coincident: m, and components of quaternions. */
 const ONE_PLACE = 1e-4;
 
 /** rviz_default_plugins/RobotModel */
@@ -37,34 +37,36 @@ export class RobotModelDrawing implements Drawing {
     take(session.robots.get(display.id));
   }
 
-  /** Visuals drawn now. */
+  /** The number of visuals drawn now. */
   get visualsDrawn(): number {
     return this.root.visible ? (this.shown?.visualsDrawn ?? 0) : 0;
   }
 
-  /** Whether something of it has a place: a link with visuals, or any link if no link has visuals. */
+  /** Whether the robot has a pose: any link with visuals, or any link if no link has visuals. */
   get isInPlace(): boolean {
     return this.shown?.isInPlace ?? false;
   }
 
-  /** Links that have a place. */
+  /** The number of links with a pose. */
   get linkCount(): number {
     return this.shown?.linkCount ?? 0;
   }
 
-  /** A key of the parts of the robot that are seen; empty while there is none, or no transform of it. */
+  /** A key of the visible parts of the robot; empty while no robot or no transform is known. */
   get seen(): string {
     const { posed, loading } = this.shown?.progress ?? { posed: 0, loading: 0 };
     const isPlain = this.visualsDrawn === 0 && loading > 0;
     return posed === 0 || isPlain ? "" : [this.robotsShown, posed, loading].join();
   }
 
-  /** The box around what is seen, in the fixed frame, m; around the links' origins where nothing is. */
+  /**
+   * Returns the bounding box of the visible parts in the fixed frame, m; of the links' origins if nothing is visible.
+   */
   bounds(): Box3 {
     return this.shown?.bounds() ?? new Box3();
   }
 
-  /** The height of the ground under it, in the fixed frame, m. */
+  /** Returns the height of the ground below the robot in the fixed frame, m. */
   ground(): number {
     return this.shown?.ground() ?? 0;
   }
@@ -78,13 +80,13 @@ export class RobotModelDrawing implements Drawing {
     return this.root.visible ? (this.shown?.visibleMeshes ?? []) : [];
   }
 
-  /** What shines on it; a studio does with shadows. */
+  /** The lighting of the robot; Studio has shadows. */
   set light(lighting: Lighting) {
     this.styleIsOld ||= lighting !== this.lighting;
     this.lighting = lighting;
   }
 
-  /** Draws a part elsewhere than the description has it; null for nothing. */
+  /** Draws a part at another pose than that of the description; null restores it. */
   displace(displaced: Displacement | null): void {
     this.displaced = displaced;
     this.shown?.displaceShape(displaced?.shape ?? null);
@@ -136,7 +138,7 @@ export class RobotModelDrawing implements Drawing {
     return this.shown?.tell() ?? {};
   }
 
-  /** A link that draws nothing is where its frame is. */
+  /** Returns the origin of a link's frame, for links without visuals. */
   placeOf(name: string): Vector3 | null {
     const { session, display } = this.context;
     const link = session.robots.get(display.id)?.links.find((each) => each.name === name);
@@ -156,8 +158,8 @@ export class RobotModelDrawing implements Drawing {
   }
 
   /**
-   * A predicate of the links of an old description that are not drawn: they look as in the new one, and have the same
-   * pose.
+   * Returns a predicate for the links of an old description that are not drawn, because they look the same in the new
+   * one and have the same pose.
    */
   private covered(): ((link: LinkScene) => boolean) | undefined {
     const { display, session } = this.context;

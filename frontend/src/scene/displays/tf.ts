@@ -14,27 +14,27 @@ const SHAFT_COLOR = 0xcccc4d;
 const HEAD_COLOR = 0xff1a99;
 const HEAD_LENGTH = 0.1;
 const NAME_HEIGHT = 0.1;
-/** A frame this close to its parent gets no arrow, m. */
+/** A frame closer to its parent than this gets no arrow, m. */
 const SHORTEST_ARROW = 0.001;
-/** Steps in which fading is drawn: a new frame for each, none in between. */
+/** The number of steps in which fading is drawn, so that frames are requested only at steps. */
 const FADE_STEPS = 32;
 
-/** From this many frames on they are drawn with fewer corners. */
+/** From this number of frames on, axes and arrows have fewer segments. */
 const MANY_FRAMES = 120;
 const FINE_SEGMENTS = 12;
 const COARSE_SEGMENTS = 5;
 
-/** rviz_default_plugins/TF: axes, arrows to the parents and names of all frames, each kind in one draw call. */
+/** rviz_default_plugins/TF: axes, arrows to parents and names of all frames, each kind in one draw call. */
 export class TfDrawing implements Drawing {
   readonly root = new Group();
   private readonly markers = new FrameMarkers(this.root, FINE_SEGMENTS);
   private readonly names = new LabelBatch();
   private readonly forget: (() => void)[];
-  /** The frames that the server's filters leave and whose boxes are on. */
+  /** The frames that pass the server's filters and whose boxes are ticked. */
   private wanted = new Set<string>();
   private ageing = "";
   private named = 0;
-  /** The frames that have axes, in the order of the copies. */
+  /** The frames that have axes, in the order of the copies in the batch. */
   private withAxes: string[] = [];
 
   constructor(private readonly context: DrawingContext) {
@@ -87,7 +87,7 @@ export class TfDrawing implements Drawing {
     this.ageing = this.ageKey();
   }
 
-  /** Frames are taken by their axes, as in RViz. */
+  /** Picks frames by their axes, as in RViz. */
   pick(ray: Raycaster): Hit | null {
     const hit = this.markers.axes.pick(ray);
     const key = hit && this.withAxes[hit.copy];
@@ -107,7 +107,7 @@ export class TfDrawing implements Drawing {
     return framePose(frames, frames.row(name), pose) ? new Vector3().setFromMatrixPosition(pose) : null;
   }
 
-  /** A frame as RViz's Selection panel shows it. */
+  /** Returns a frame as RViz's Selection panel shows it. */
   describe(name: string): Described | null {
     const { frames } = this.context.session;
     const row = frames.row(name);
@@ -117,7 +117,7 @@ export class TfDrawing implements Drawing {
     return { name: `Frame ${name}`, children: [{ name: "Parent", value: parent }, ...describedPose(pose)] };
   }
 
-  /** The number of axes, names and arrows drawn, and their bounds in the fixed frame. */
+  /** Returns the number of axes, names and arrows drawn, and their bounds in the fixed frame. */
   inspect(): object {
     const box = new Box3();
     this.markers.axes.expandBox(box);
@@ -170,7 +170,7 @@ export class TfDrawing implements Drawing {
     return result;
   }
 
-  /** Only frames that look another age ask for a drawing. */
+  /** Requests a frame only if the fading of some frame changed by a step. */
   private agesChanged(): void {
     if (this.context.display.enabled && this.ageKey() !== this.ageing) this.context.invalidate();
   }

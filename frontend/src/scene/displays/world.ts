@@ -13,12 +13,12 @@ import { freePlace } from "./free-place";
 import { Displacement, modelOf } from "./world-models";
 import { WorldSensors } from "./world-sensors";
 
-/** Begins the keys of the rays of lidars. */
+/** The prefix of the keys of lidar rays. */
 const RAYS = "rays ";
 
-/** What is so much flatter than it is wide is a ground, as a rule. */
+/** A box flatter than this share of its width is taken for a ground. */
 const FLAT = 0.02;
-/** What is so much lower than the ground has fallen out of the world, m. */
+/** An object this far below the ground has fallen out of the world, m. */
 const FALLEN = -1;
 
 /** linkwright/World: the links of all models of a simulated world. */
@@ -31,7 +31,7 @@ export class WorldDrawing implements Drawing {
   private readonly displacement = new Displacement();
   private styleIsOld = true;
   private poseIsOld = true;
-  /** The last computed box around all visible things, and that around the origins of links as well. */
+  /** The last bounding box of everything visible, and that box extended to the origins of all links. */
   private seen = new Box3();
   private reached = new Box3();
   private readonly lights: WorldLights;
@@ -93,12 +93,12 @@ export class WorldDrawing implements Drawing {
     this.shown?.move(view);
   }
 
-  /** What lights it. */
+  /** The lighting of the world. */
   get lighting(): Lighting {
     return this.lights.lighting;
   }
 
-  /** The light in it; null while it is drawn in that of the camera. */
+  /** The world's own light; null while the camera's light is used. */
   get ownLight(): OwnLight | null {
     if (!this.scene || !this.lights.isLit) return null;
     const own = this.lights.isOfWorld;
@@ -111,7 +111,7 @@ export class WorldDrawing implements Drawing {
     };
   }
 
-  /** Whether something of it has a place. */
+  /** Whether any part of the world has a pose. */
   get isInPlace(): boolean {
     return this.shown?.isInPlace ?? false;
   }
@@ -128,7 +128,10 @@ export class WorldDrawing implements Drawing {
     return (this.scene?.robots.length ?? 0) > 0;
   }
 
-  /** The boxes around the models that are robots, and around all but grounds, without what fell, in the fixed frame, m. */
+  /**
+   * Returns the bounding boxes of the robots and of everything but grounds, without what has fallen, in the fixed
+   * frame, m.
+   */
   extents(): { robots: Box3; world: Box3 } {
     const [robots, world, all] = [new Box3(), new Box3(), new Box3()];
     const names = new Set(this.scene?.robots);
@@ -144,24 +147,24 @@ export class WorldDrawing implements Drawing {
     return { robots, world: world.isEmpty() ? all : world };
   }
 
-  /** A free position for a model, near the robots, in the frame of the world, m. */
+  /** Returns a free position for a model, near the robots, in the frame of the world, m. */
   freePlace(): number[] {
     const { robots } = this.extents();
     const near = robots.isEmpty() ? null : robots.getCenter(new Vector3());
     const names = new Set(this.scene?.robots);
-    // Walls around the robot have a box with all of the room in it.
+    // Ignore walls around the robot: their box contains the whole room.
     const surrounds = (link: string, box: Box3): boolean => near !== null && !names.has(modelOf(link)) && box.containsPoint(near);
     const boxes = [...(this.shown?.boundsOfLinks() ?? [])].filter(([link, box]) => !box.isEmpty() && !this.isFlat(link) && !isLikeGround(box) && !surrounds(link, box));
     return freePlace(boxes.map(([, box]) => box), this.world(), near);
   }
 
-  /** The pose of the file's camera, looking along x, in the fixed frame; null where it has none. */
+  /** Returns the pose of the file's camera, which looks along x, in the fixed frame; null if the file has none. */
   cameraOfFile(): Matrix4 | null {
     const camera = this.scene?.camera;
     return camera ? poseMatrix(camera, new Matrix4()).premultiply(this.world()) : null;
   }
 
-  /** Whether a ray meets a robot, or nothing as far as it goes. */
+  /** Whether a ray hits a robot, or nothing within its range. */
   isClear(ray: Raycaster): boolean {
     const hit = this.pick(ray);
     return hit === null || (this.scene?.robots.includes(modelOf(hit.key)) ?? false);
@@ -187,42 +190,45 @@ export class WorldDrawing implements Drawing {
     return this.shown?.placeOf(link) ?? null;
   }
 
-  /** The pose of a link in the fixed frame; null before that is known. */
+  /** Returns the pose of a link in the fixed frame; null until it is known. */
   poseOf(link: string): Matrix4 | null {
     return this.shown?.poseOf(link) ?? null;
   }
 
-  /** The links of a model that is in the world itself. */
+  /** Returns the links of a top-level model of the world. */
   linksOf(model: string): string[] {
     return [...this.rowOf.keys()].filter((link) => modelOf(link) === model);
   }
 
-  /** Whether there is nothing of a link but planes, as of a ground. */
+  /** Whether a link consists of planes only, as a ground does. */
   isFlat(link: string): boolean {
     const row = this.rowOf.get(link);
     const visuals = (row === undefined ? null : this.scene?.links[row]?.visuals) ?? [];
     return visuals.every(({ kind }) => kind === "plane");
   }
 
-  /** Shows models moved in the world until they really are elsewhere; `models` has the matrices that premultiply their poses. */
+  /**
+   * Shows models away from their poses until their actual poses change; `models` has the matrices that premultiply the
+   * poses.
+   */
   displace(models: ReadonlyMap<string, Matrix4>): void {
     this.displacement.set(models);
     this.poseIsOld = true;
     this.context.invalidate();
   }
 
-  /** A direction of the fixed frame in that of the world. */
+  /** Converts a direction from the fixed frame to the frame of the world. */
   toWorld(direction: Vector3): Vector3 {
     const length = direction.length();
     return direction.clone().transformDirection(this.world().invert()).multiplyScalar(length);
   }
 
-  /** A point of the fixed frame in that of the world, m. */
+  /** Converts a point from the fixed frame to the frame of the world, m. */
   placeInWorld(point: readonly number[]): number[] {
     return new Vector3().fromArray(point).applyMatrix4(this.world().invert()).toArray();
   }
 
-  /** The pose of the world in the fixed frame. */
+  /** Returns the pose of the world in the fixed frame. */
   world(): Matrix4 {
     const world = new Matrix4();
     if (this.placed) dataPose(this.context.session.frames, this.placed.data, world);
@@ -239,7 +245,7 @@ export class WorldDrawing implements Drawing {
     this.sensors.dispose();
   }
 
-  /** The box that shadows are drawn in: all vertices are looked at only when a link has left it, and not for each pose. */
+  /** Returns the box for shadows. It is computed from all vertices only when a link has left it, not for each pose. */
   private shadowed(shown: RobotDrawing): Box3 {
     const origins = (this.scene?.links ?? []).flatMap(({ name, visuals }) => (visuals.length > 0 ? shown.placeOf(name) ?? [] : []));
     if (this.styleIsOld || !origins.every((origin) => this.reached.containsPoint(origin))) {
