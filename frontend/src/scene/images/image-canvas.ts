@@ -1,19 +1,22 @@
 import type { ImageFrame } from "../../protocol";
 
-/** An image that is to be painted. */
+/** An image waiting to be painted. */
 interface Waiting {
   image: ImageFrame | ImageBitmap;
   done: (shown: boolean) => void;
 }
 
-/** A file that is to be unpacked. */
+/** An image file waiting to be decoded. */
 interface Packed {
   turn: number;
   frame: ImageFrame;
   done: (shown: boolean) => void;
 }
 
-/** The newest image of a display, on a canvas of its size. Of files that come faster than they are unpacked only the newest is. */
+/**
+ * The newest image of a display, on a canvas of its size. If image files arrive faster than they are decoded, only the
+ * newest is decoded.
+ */
 export class ImageCanvas {
   readonly canvas = document.createElement("canvas");
   private readonly context: CanvasRenderingContext2D;
@@ -24,7 +27,7 @@ export class ImageCanvas {
   private packed: Packed | null = null;
   private unpacks = false;
 
-  /** `soon` says when images are painted: the newest of those that came by then. */
+  /** `soon` schedules painting; only the newest image at that time is painted. */
   constructor(private readonly soon: (paint: () => void) => void = (paint) => paint()) {
     this.canvas.width = this.canvas.height = 0;
     const context = this.canvas.getContext("2d", { willReadFrequently: true });
@@ -32,7 +35,7 @@ export class ImageCanvas {
     this.context = context;
   }
 
-  /** The number of images shown. */
+  /** The number of images shown so far. */
   get count(): number {
     return this.painted;
   }
@@ -41,7 +44,7 @@ export class ImageCanvas {
     return this.canvas.width === 0;
   }
 
-  /** Takes an image; calls `done` when it is on the canvas, or with false when it cannot be read. */
+  /** Shows an image; calls `done` when it is on the canvas, or with false if it cannot be decoded. */
   take(frame: ImageFrame, done: (shown: boolean) => void): void {
     const turn = ++this.taken;
     if (frame.encoding !== "file") {
@@ -59,12 +62,12 @@ export class ImageCanvas {
     this.canvas.width = this.canvas.height = 0;
   }
 
-  /** Colour of a pixel, for tests. */
+  /** Returns the colour of a pixel, for tests. */
   colorAt(x: number, y: number): number[] {
     return this.isEmpty ? [] : [...this.context.getImageData(x, y, 1, 1).data];
   }
 
-  /** One after the other: each takes the memory of all its pixels. */
+  /** Decodes one file at a time, because each needs memory for all its pixels. */
   private async unpack(): Promise<void> {
     this.unpacks = true;
     for (let next = this.packed; next !== null; next = this.packed) {
@@ -118,7 +121,7 @@ function isBitmap(image: ImageFrame | ImageBitmap): image is ImageBitmap {
   return "close" in image;
 }
 
-/** Red, green, blue and alpha of each pixel. */
+/** Returns red, green, blue and alpha of each pixel. */
 export function pixels({ encoding, data }: ImageFrame): Uint8ClampedArray<ArrayBuffer> {
   if (encoding === "rgba") return new Uint8ClampedArray(data);
   const step = encoding === "grey" ? 1 : 3;

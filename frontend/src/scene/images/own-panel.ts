@@ -4,10 +4,10 @@ import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import type { DrawingContext } from "../displays/drawing";
 
-/** Displays that show no data in the scene. */
+/** Display classes that show no data in the scene. */
 const NOTHING_TO_SEE = new Set(["rviz_default_plugins/Grid", "rviz_default_plugins/Image"]);
 
-/** The panel of an Image or Camera display: there as long as the display is enabled, as in RViz. */
+/** The panel of an Image or Camera display, which is open while the display is enabled, as in RViz. */
 export class OwnPanel {
   readonly element: HTMLElement;
   private readonly notice = h("p", { class: "image-notice" });
@@ -25,18 +25,18 @@ export class OwnPanel {
     this.element = h("div", { class: "image-panel" }, canvas, this.notice);
   }
 
-  /** Text over the image, or in its place, and what it comes from, where that is known; empty for none. */
+  /** Shows a text over the image or in its place, and its cause if known; an empty text shows nothing. */
   say(text: string, cause = ""): void {
     this.notice.replaceChildren(text, ...(cause === "" ? [] : [h("small", {}, cause)]));
     this.notice.hidden = text === "";
   }
 
-  /** Whether the user can see it. */
+  /** Whether the panel is visible to the user. */
   get isSeen(): boolean {
     return this.element.clientWidth > 0 && this.element.clientHeight > 0;
   }
 
-  /** Opens, closes and names the panel as the display is now. */
+  /** Opens, closes and titles the panel to match the display. */
   match(): void {
     const { display, panels, session } = this.context;
     this.canvas.setAttribute("aria-label", display.name);
@@ -59,7 +59,7 @@ export class OwnPanel {
   }
 }
 
-/** Whether the page shows a recording with only its images switched on. */
+/** Whether the page shows a recording with only its image displays enabled. */
 function showsOnlyImages({ timeline, displays }: Session): boolean {
   const nothing = (display: DisplayState): boolean => !display.enabled || display.isGroup || NOTHING_TO_SEE.has(display.drawing);
   return timeline.timeline?.live === false && displays.displays.every(nothing);

@@ -4,19 +4,19 @@ import { axesGeometry, ballGeometry } from "../objects/geometries";
 import { LabelBatch } from "../objects/label-batch";
 import { linkPose, type InspectedRobot } from "./inspected-robot";
 
-/** Lengths in units of the robot's mark size. */
+/** Sizes in units of the robot's mark size. */
 const AXES = 0.42;
 const BALL = 0.11;
 const LABEL = 0.17;
-/** What a frame is of the size of its parent's. */
+/** The size of a frame relative to its parent's, and the minimum size. */
 const SHRINKING = 0.88;
 const SMALLEST = 0.3;
-/** With more frames than these only levels are written, not names. */
+/** With more frames than this, only levels are written, not names. */
 const MOST_NAMES = 60;
-/** Hues advance by the golden ratio, so that neighbouring levels differ. */
+/** Hues advance by the golden ratio, so that consecutive levels differ. */
 const HUE_STEP = 0.618;
 
-/** The frames of links with a ball in the colour of their level in the tree; deeper ones are smaller. */
+/** The frames of links, each with a ball in the colour of its level in the tree; deeper ones are smaller. */
 export class DepthMarks {
   private readonly axes: CopyBatch;
   private readonly balls: CopyBatch;
@@ -29,7 +29,7 @@ export class DepthMarks {
     parent.add(this.labels.root);
   }
 
-  /** `deepest` is the last level to be drawn, null for all; with null for the robots nothing is. */
+  /** Draws the frames down to the level `deepest`, or all for null; null for `robots` draws nothing. */
   update(robots: readonly InspectedRobot[] | null, deepest: number | null): void {
     const frames = (robots ?? []).flatMap((robot) =>
       [...robot.model.links.keys()].flatMap((link) => {
@@ -55,7 +55,7 @@ export class DepthMarks {
     for (const batch of [this.axes, this.balls, this.labels]) batch.end();
   }
 
-  /** Frames drawn on each level. */
+  /** Returns the number of frames drawn on each level. */
   inspect(): object {
     return Array.from(this.levels, (count) => count);
   }

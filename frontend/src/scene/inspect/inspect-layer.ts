@@ -5,12 +5,12 @@ import type { InspectedRobot } from "./inspected-robot";
 import { JointMarks } from "./joint-marks";
 import { MassMarks } from "./mass-marks";
 
-/** Marks are made with this part of the robot's diagonal. */
+/** The mark size, as a share of the robot's diagonal. */
 const UNIT = 0.2;
-/** For a robot that draws nothing, m. */
+/** The mark size for a robot without visible parts, m. */
 const UNIT_OF_NOTHING = 0.2;
 
-/** Draws what is invisible of the robots, as far as the user wants to see it. It costs nothing while he does not. */
+/** Draws those invisible properties of robots that the user wants to see. It costs nothing while there are none. */
 export class InspectLayer {
   readonly root = new Group();
   private marks: { masses: MassMarks; joints: JointMarks; frames: DepthMarks } | null = null;
@@ -18,7 +18,7 @@ export class InspectLayer {
   private isMasses = false;
   private readonly units = new Map<string, { revision: number; unit: number }>();
 
-  /** @param boundsOf the box around what a display draws, in the fixed frame. */
+  /** @param boundsOf - returns the bounding box of what a display draws, in the fixed frame. */
   constructor(
     private readonly session: Session,
     private readonly boundsOf: (display: string) => Box3,
@@ -29,7 +29,7 @@ export class InspectLayer {
       this.holdWhatIsNeeded();
       invalidate();
     });
-    // Positions may come after the transforms that they go with, which are drawn by then.
+    // Positions may arrive after the transforms of the same time, which are drawn by then.
     session.joints.positionsChanged.on(() => {
       if (inspect.current.joints) invalidate();
     });
@@ -38,7 +38,7 @@ export class InspectLayer {
     this.holdWhatIsNeeded();
   }
 
-  /** Puts everything where it is now; before each frame. */
+  /** Updates all marks; called before each frame. */
   update(): void {
     const { current, deepest, any } = this.session.inspect;
     if (!any && !this.marks) return;
@@ -68,7 +68,7 @@ export class InspectLayer {
     });
   }
 
-  /** Marks keep their size while the robot moves; another description may make it another size. */
+  /** Returns the mark size. Marks keep their size while the robot moves; a new description may change it. */
   private unitOf(display: string, revision: number): number {
     const { scale } = this.session.inspect;
     const known = this.units.get(display);

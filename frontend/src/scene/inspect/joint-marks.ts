@@ -8,16 +8,16 @@ const RANGE = 0x35d0c0;
 const CURRENT = 0xfff04d;
 const BEYOND = 0xff4d42;
 const FAN_ALPHA = 0.16;
-/** Lengths in units of the robot's mark size. */
+/** Sizes in units of the robot's mark size. */
 const RADIUS = 0.5;
 const AXIS_REACH = 0.65;
 const END = 0.09;
-/** rad between two points of an arc. */
+/** The angle between two points of an arc, rad. */
 const STEP = Math.PI / 32;
-/** How far a position may be beyond a limit and still count as at it. */
+/** A position may exceed a limit by this much and still count as within it. */
 const TOLERANCE = 1e-4;
 
-/** The axes of joints with arcs or rails from limit to limit, and where the joints stand. */
+/** The axes of joints with arcs or rails between their limits, and the joints' positions. */
 export class JointMarks {
   private readonly fans: VertexStream;
   private readonly lines: VertexStream;
@@ -61,7 +61,7 @@ export class JointMarks {
     }
   }
 
-  /** An arc from limit to limit around the axis, a circle without limits, and a hand at the position. */
+  /** Draws an arc between the limits, or a circle without limits, and a pointer at the position. */
   private arc(pose: Matrix4, axis: Vector3, joint: JointDetails, position: number | null, unit: number): void {
     const [u, v] = across(axis);
     const point = (angle: number, radius: number): Vector3 =>
@@ -72,7 +72,7 @@ export class JointMarks {
     const radius = RADIUS * unit;
     const limited = joint.lower !== null && joint.upper !== null;
     const from = limited ? (joint.lower ?? 0) : 0;
-    // Limits of several turns overlap; once round says as much.
+    // Limits may span several turns; draw one full circle at most.
     const to = limited ? Math.min(joint.upper ?? 0, from + 2 * Math.PI) : 2 * Math.PI;
     const center = new Vector3().setFromMatrixPosition(pose);
     const steps = Math.max(1, Math.ceil((to - from) / STEP));
@@ -93,7 +93,7 @@ export class JointMarks {
     this.fans.add(point(position, radius), point(position - 0.07, radius * 1.2), point(position + 0.07, radius * 1.2));
   }
 
-  /** A rail from limit to limit along the axis with stops at its ends, and a bead at the position. */
+  /** Draws a rail between the limits along the axis with stops at its ends, and a bead at the position. */
   private rail(pose: Matrix4, axis: Vector3, joint: JointDetails, position: number | null, unit: number): void {
     const [u, v] = across(axis);
     const point = (along: number, x = 0, y = 0): Vector3 =>
@@ -121,7 +121,10 @@ export class JointMarks {
   }
 }
 
-/** Two directions across an axis: angle 0 is along the first. The axis that is farthest from it stays in the plane. */
+/**
+ * Returns two directions perpendicular to an axis; angle 0 is along the first, which is the projection of the
+ * coordinate axis farthest from the joint's axis.
+ */
 function across(axis: Vector3): [Vector3, Vector3] {
   const parts = axis.toArray().map(Math.abs);
   const helper = new Vector3().setComponent(parts.indexOf(Math.min(...parts)), 1);

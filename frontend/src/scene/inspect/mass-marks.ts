@@ -10,30 +10,33 @@ const PLAUSIBLE = 0x4da3ff;
 const IMPLAUSIBLE = 0xff4d42;
 const TOTAL = 0xffd23c;
 const BOX_ALPHA = 0.3;
-/** Diameters of marks in units of the robot's mark size. */
+/** Sizes of marks in units of the robot's mark size. */
 const BALL = 0.16;
 const TOTAL_BALL = 0.3;
 const LABEL = 0.2;
-/** An ellipsoid with the inertia of a box has semi-axes of this part of the box's edges: m/5 (b² + c²) = m/12 (B² + C²). */
+/**
+ * An ellipsoid with the inertia of a box has semi-axes of this share of the box's edges: m/5 (b² + c²) = m/12 (B² +
+ * C²).
+ */
 const ELLIPSOID = Math.sqrt(5 / 12);
-/** Corners of a cube of one metre that its edges join. */
+/** The corners of a unit cube, in pairs that form its edges. */
 const EDGES = cubeEdges();
 
-/** The marks to be drawn. */
+/** The kinds of marks to draw. */
 export interface MassMarkChoice {
   centers: boolean;
   boxes: boolean;
   ellipsoids: boolean;
 }
 
-/** Centres of mass as balls in black and white, inertias as boxes and ellipsoids; implausible ones are red. */
+/** Centres of mass as balls in black and white, and inertias as boxes and ellipsoids; implausible ones are red. */
 export class MassMarks {
   private readonly balls: CopyBatch;
   private readonly boxes: CopyBatch;
   private readonly ellipsoids: CopyBatch;
   private readonly edges: VertexStream;
   private readonly labels = new LabelBatch();
-  /** Of the whole robots, in the fixed frame. */
+  /** The centres of mass of whole robots, in the fixed frame. */
   private totals: Vector3[] = [];
 
   constructor(parent: Object3D) {
@@ -112,7 +115,7 @@ export class MassMarks {
       this.edges.setLook(color);
       this.edges.add(...EDGES.map((corner) => corner.clone().applyMatrix4(box)));
     }
-    // Its diameters are twice the semi-axes; the ball that is scaled has a diameter of one.
+    // The diameters are twice the semi-axes, and the ball that is scaled has a diameter of one.
     if (choice.ellipsoids) this.ellipsoids.add(axes.scale(size.multiplyScalar(2 * ELLIPSOID)), 0, BOX_ALPHA, color);
   }
 }
@@ -127,7 +130,7 @@ function turned(x: number, y: number, z: number, w: number): Matrix4 {
   return new Matrix4().makeRotationFromQuaternion(new Quaternion(x, y, z, w));
 }
 
-/** Paints a ball as centres of mass are drawn on paper: quarters in black and white. */
+/** Paints a ball with the symbol of a centre of mass: quarters in black and white. */
 function quartered(ball: BufferGeometry): BufferGeometry {
   const flat = ball.toNonIndexed();
   const [positions, colors] = [flat.getAttribute("position"), flat.getAttribute("color")];

@@ -17,15 +17,15 @@ import { isSolid, SolidMarkers, surfacesOf } from "../markers/solid-markers";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { poseMatrix } from "../pose";
 
-/** What the mouse is over is this much brighter. */
+/** The factor and offset by which the colours of a control under the pointer are brightened. */
 const BRIGHTER = 1.4;
 const LIGHTER = 0.15;
 
-/** One control of an interactive marker: its markers, and how it is turned. */
+/** A control of an interactive marker: its markers and its orientation. */
 export class ControlHandle {
-  /** In the marker's reference frame. */
+  /** The group of its markers, in the marker's reference frame. */
   readonly root = new Group();
-  /** Turned by the user about its own axis since it came, rad; only `fixed` controls keep that. */
+  /** The angle by which the user has turned the control about its own axis, rad; only `fixed` controls keep it. */
   rotation = 0;
   private readonly solids = new SolidMarkers(this.root);
   private readonly objects: MarkerObject[] = [];
@@ -51,7 +51,7 @@ export class ControlHandle {
     this.arrangeSolids();
   }
 
-  /** Whether it is more than something to look at. */
+  /** Whether the control reacts to the mouse. */
   get isActive(): boolean {
     return this.control.mode !== "none";
   }
@@ -60,7 +60,7 @@ export class ControlHandle {
     return this.objects.every((object) => object.settled);
   }
 
-  /** With its axis as x, in the reference frame. */
+  /** The orientation in the reference frame, with the control's axis as x. */
   get orientation(): Quaternion {
     return this.framed.clone().multiply(this.own);
   }
@@ -72,7 +72,10 @@ export class ControlHandle {
     for (const { root } of this.objects) root.traverse((object) => brighten(object, bright));
   }
 
-  /** Puts it where its marker is; `camera` and `reference` (of the marker's frame) turn what faces the viewer. */
+  /**
+   * Moves the control to its marker's pose; `camera` and `reference` (the pose of the marker's frame) orient controls
+   * that face the viewer.
+   */
   place(position: Vector3, orientation: Quaternion, camera: Camera, reference: Matrix4): void {
     this.root.position.copy(position);
     const mode = this.control.orientation_mode;
@@ -84,7 +87,7 @@ export class ControlHandle {
     this.root.quaternion.copy(independent ? orientation : this.framed);
   }
 
-  /** The intersection of a ray, in the world, with its markers. */
+  /** Returns the intersection of a ray with its markers, in the fixed frame. */
   hit(ray: Raycaster): Intersection | null {
     this.root.updateWorldMatrix(true, true);
     const objects: Object3D[] = this.objects.map((object) => object.root);
@@ -123,7 +126,10 @@ function brighten(object: Object3D, bright: boolean): void {
   }
 }
 
-/** Turns the control's axis along the line of sight and its z up, as RViz does with controls that face the viewer. */
+/**
+ * Returns the orientation that turns the control's axis along the line of sight and its z up, as RViz does for controls
+ * that face the viewer.
+ */
 function facing(own: Quaternion, camera: Camera, reference: Matrix4): Quaternion {
   const view = new Quaternion().setFromRotationMatrix(camera.matrixWorld);
   const forward = new Vector3(0, 0, -1).applyQuaternion(view);

@@ -7,38 +7,40 @@ export interface MarkerPose {
   orientation: Quaternion;
 }
 
-/** The movement of the mouse; everything in the marker's reference frame. */
+/** A movement of the mouse; all vectors are in the marker's reference frame. */
 export interface DragEvent {
-  /** From the camera through the pointer. */
+  /** The ray from the camera through the pointer. */
   ray: Ray;
-  /** Pixels since the last event. */
+  /** The movement since the last event, pixels. */
   dx: number;
   dy: number;
   shift: boolean;
   ctrl: boolean;
-  /** The camera's axes, unit length. */
+  /** The axes of the camera, unit vectors. */
   right: Vector3;
   up: Vector3;
   forward: Vector3;
 }
 
 const PIXELS_PER_TURN = 300;
-/** Metres along the line of sight for each pixel, for each metre between the camera and the marker. */
+/** Metres along the line of sight for each pixel and for each metre between the camera and the marker. */
 const DEPTH_PER_PIXEL = 0.002;
-/** A plane that is seen this close to its edge cannot be pointed at. */
+/**
+ * The minimum sine of the angle between a ray and a plane; at smaller angles the pointer gives no reliable position.
+ */
 const SHALLOWEST = 0.05;
 
-/** One control of an interactive marker being dragged, with the rules of RViz's InteractiveMarkerControl. */
+/** A drag of an interactive marker's control, by the rules of RViz's InteractiveMarkerControl. */
 export class Drag {
   private readonly start: MarkerPose;
   private readonly grabbed: Vector3;
-  /** Of the control, at the beginning: move along it, turn about it. */
+  /** The control's axis at the start of the drag: the direction of motion, or the axis of rotation. */
   private readonly axis: Vector3;
   private readonly pose: MarkerPose;
 
   /**
-   * `grab` is where the control was taken, `orientation` the control's, with the x axis as its axis; both in the
-   * reference frame.
+   * `grab` is the point where the control was grabbed, `orientation` the control's orientation, whose x axis is the
+   * control's axis; both in the reference frame.
    */
   constructor(
     private readonly mode: InteractiveControl["mode"],
@@ -52,7 +54,7 @@ export class Drag {
     this.axis = new Vector3(1, 0, 0).applyQuaternion(orientation).normalize();
   }
 
-  /** The marker's pose after a movement of the mouse; null where it cannot be said. */
+  /** Returns the marker's pose after a movement of the mouse; null if the movement does not define one. */
   moved(event: DragEvent): MarkerPose | null {
     const done = this.move(event);
     return done ? copyOf(this.pose) : null;
@@ -141,7 +143,7 @@ export class Drag {
     return true;
   }
 
-  /** The point of the axis through `origin` that is nearest to the grabbed point. */
+  /** Returns the point of the axis through `origin` that is nearest to the grabbed point. */
   private foot(origin: Vector3): Vector3 {
     const along = this.grabbed.clone().sub(origin).dot(this.axis);
     return origin.clone().addScaledVector(this.axis, along);
@@ -152,7 +154,7 @@ function copyOf(pose: MarkerPose): MarkerPose {
   return { position: pose.position.clone(), orientation: pose.orientation.clone() };
 }
 
-/** The distance along the axis through `origin` at which the ray passes nearest; null where they are parallel. */
+/** Returns the distance along the axis through `origin` to the point nearest to the ray; null if they are parallel. */
 export function alongAxis(ray: Ray, origin: Vector3, axis: Vector3): number | null {
   const between = origin.clone().sub(ray.origin);
   const slant = axis.dot(ray.direction);
@@ -166,7 +168,7 @@ function onPlane(ray: Ray, point: Vector3, normal: Vector3): Vector3 | null {
   return ray.intersectPlane(new Plane().setFromNormalAndCoplanarPoint(normal, point), new Vector3());
 }
 
-/** The turn about `axis` that takes the direction `from` to `to`. */
+/** Returns the rotation about `axis` from the direction `from` to the direction `to`. */
 export function turnBetween(from: Vector3, to: Vector3, axis: Vector3): Quaternion {
   const [a, b] = [from, to].map((each) => each.clone().projectOnPlane(axis));
   if (!a || !b) return new Quaternion();

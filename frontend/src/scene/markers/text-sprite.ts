@@ -3,14 +3,14 @@ import { CanvasTexture, LinearFilter, NoColorSpace, Sprite, SpriteMaterial } fro
 const FONT_PX = 48;
 const LINE_PX = 58;
 const PADDING_PX = 6;
-/** Around letters, so that they are read on any ground: of the colour that contrasts with theirs. */
+/** The outline around letters, in a contrasting colour so that they are legible on any background. */
 const RIM_PX = 6;
 const RIMS = { dark: "rgba(12, 14, 18, 0.8)", light: "rgba(255, 255, 255, 0.85)" };
 const LIGHT = 0.4;
-/** Longer texts would make textures that no GPU takes. */
+/** Pixels; larger textures would exceed the limit of GPUs. */
 const WIDEST_PX = 4096;
 
-/** A text that faces the camera, its middle at the origin; `height` of a capital letter's line in metres. */
+/** Returns a text that faces the camera, centred at the origin; `height` is the height of a line, m. */
 export function textSprite(text: string, height: number, color: readonly number[]): Sprite {
   const [r = 1, g = 1, b = 1, a = 1] = color;
   const lines = text.split("\n");
