@@ -11,24 +11,29 @@ import { framePose, poseMatrix } from "../pose";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
 
-/** Without a grid, numbers of a drag are kept to this: m, and rad for a hundredth of a degree. */
+/**
+ * Without a grid, dragged values are rounded to these steps: m, rad (a hundredth of a degree), and components of an
+ * axis.
+ */
 const FINEST_LENGTH = 1e-4;
 const FINEST_ANGLE = Math.PI / 18000;
 const FINEST_AXIS = 1e-4;
-/** Between the middle of the handles and an edge of the canvas, pixels. */
+/** The minimum distance between the centre of the handles and an edge of the canvas, pixels. */
 const LEAST_ROOM = 40;
 const AXIS_COLOR = 0xff9d3c;
 const ONE = new Vector3(1, 1, 1);
 
-/** Handles on the part that is edited, and the robot as it would be: in the page alone, until the files contain the change. */
+/**
+ * The handles on the edited part, and a preview of the edited robot in this page, until the files contain the change.
+ */
 export class PartHandles {
   private readonly gizmo: Gizmo;
   private readonly axis = new Line(new BufferGeometry(), new LineBasicMaterial({ color: AXIS_COLOR, depthTest: false }));
   private readonly editing: EditingState;
-  /** While a handle is held: where the handles were, and the part. */
+  /** The handles' pose and the part at the start of a drag; null while no handle is held. */
   private start: { handles: Matrix4; draft: Draft } | null = null;
   private previewed: string | null = null;
-  /** The part that the camera has looked for: a user who turns the camera away from it afterwards does so on purpose. */
+  /** The part that the camera was last moved to. The camera does not return to it after the user looks away. */
   private sought = "";
 
   constructor(
@@ -46,7 +51,7 @@ export class PartHandles {
     this.update();
   }
 
-  /** False for an event that others should have. */
+  /** Handles an event; returns false if it is left to others. */
   pointer(event: ToolEvent): boolean {
     const { gizmo } = this;
     if (gizmo.held) {
@@ -66,7 +71,7 @@ export class PartHandles {
     return true;
   }
 
-  /** What is asked for, and where the handles are on the canvas, for tests. */
+  /** Returns the requested pose, and the positions of the handles on the canvas, for tests. */
   inspect(): object {
     const axes = { x: new Vector3(1, 0, 0), y: new Vector3(0, 1, 0), z: new Vector3(0, 0, 1) };
     const handles = Object.entries(axes).map(([name, axis]) => [name, this.gizmo.seenAt(axis)] as const);
@@ -101,7 +106,10 @@ export class PartHandles {
     this.seek(shown);
   }
 
-  /** Goes back with the camera until the handles of a part that was chosen are seen beside the robot, where they are not in sight. */
+  /**
+   * Moves the camera back until the handles of a newly chosen part are visible together with the robot, if they are not
+   * in view.
+   */
   private seek({ part, name, index }: EditablePart): void {
     const chosen = [part, name, index].join(" ");
     if (chosen === this.sought) return;
@@ -117,7 +125,7 @@ export class PartHandles {
     if (span) this.session.view.fit(span, this.stage.room.take());
   }
 
-  /** The frame of a part's numbers, in the fixed frame; null without a transform. */
+  /** Returns the frame of a part's values, in the fixed frame; null without a transform. */
   private base(part: EditablePart): Matrix4 | null {
     const { current } = this.editing;
     const robot = this.session.robots.get(current?.display ?? "");
@@ -135,7 +143,7 @@ export class PartHandles {
     const steps = editing.snapping.steps(event.ctrl);
     gizmo.drag(event, { length: 0, angle: steps.angle });
     if (!start || !base) return;
-    // By how much the handles have gone, in the frame that the numbers are in.
+    // Express the motion of the handles in the frame of the part's values.
     const by = gizmo.pose.multiply(start.handles.clone().invert());
     const inBase = base.clone().invert().multiply(by).multiply(base);
     editing.move(chosen.part === "axis" ? turnedAxis(start.draft, inBase) : this.moved(chosen, start.draft, inBase, steps));
@@ -152,7 +160,7 @@ export class PartHandles {
     }
     const step = steps.length || FINEST_LENGTH;
     if (this.editing.frame === "parent") return { xyz: keep(at.toArray(), from.xyz, step), rpy: from.rpy };
-    // Along its own axes the way is kept to the grid, and not the place.
+    // Along the part's own axes, round the distance to the grid rather than the position.
     const own = new Quaternion().setFromRotationMatrix(before);
     const way = at.sub(new Vector3().fromArray(from.xyz)).applyQuaternion(own.clone().invert());
     const kept = new Vector3(...way.toArray().map((part) => snapped(part, step))).applyQuaternion(own);
@@ -165,7 +173,7 @@ export class PartHandles {
     this.update();
   }
 
-  /** Has the robot drawn as it would be. */
+  /** Draws the robot as it would be after the edit. */
   private preview(part: EditablePart | null): void {
     const { editing, stage, now } = this;
     const display = part && (editing.draft || part.part === "collision") ? (editing.current?.display ?? null) : null;
@@ -197,7 +205,7 @@ export class PartHandles {
     return drawing instanceof RobotModelDrawing ? drawing : null;
   }
 
-  /** The links that a joint carries. */
+  /** Returns the links that a joint carries. */
   private below(display: string, joint: string): ReadonlySet<string> {
     const joints = this.session.robots.get(display)?.joints ?? [];
     const found = new Set<string>();
@@ -219,7 +227,7 @@ export class PartHandles {
   }
 }
 
-/** The pose of a part, or the direction of its axis: turned from x. */
+/** Returns the pose of a part; for an axis, the rotation from x to its direction. */
 function partMatrix(part: EditablePart, { xyz, rpy }: Draft): Matrix4 {
   if (part.part === "axis") {
     const turn = new Quaternion().setFromUnitVectors(new Vector3(1, 0, 0), new Vector3().fromArray(xyz).normalize());
@@ -233,7 +241,7 @@ function turnedAxis({ xyz }: Draft, by: Matrix4): Draft {
   return { xyz: [x, y, z].map((part) => snapped(part, FINEST_AXIS)), rpy: [] };
 }
 
-/** Numbers on a grid; those that hardly changed are what they were. */
+/** Rounds numbers to a grid, and keeps those that hardly changed. */
 function keep(numbers: readonly number[], before: readonly number[], step: number): number[] {
   return numbers.map((number, i) => {
     const old = before[i] ?? 0;

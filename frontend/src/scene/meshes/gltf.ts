@@ -7,7 +7,7 @@ import { flatten, template, type MeshTemplate } from "./mesh-template";
 import { TextureWait } from "./texture-wait";
 
 const GLB_HEADER_BYTES = 12;
-/** Compressions that need a decoder of their own. */
+/** Extensions that are not supported, because they need decoders of their own. */
 const NOT_READ = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu"];
 
 interface Head {
@@ -16,10 +16,10 @@ interface Head {
 }
 
 /**
- * glTF, text or binary: y up by its specification, turned to z up as RViz does.
+ * Reads glTF, text or binary. It has y up by its specification, and is turned to z up as in RViz.
  *
- * @param isBinary whether its name specifies binary; its first bytes decide.
- * @throws MeshError when it is none, or needs what is not read.
+ * @param isBinary - whether the file extension is that of binary glTF; the first bytes decide.
+ * @throws MeshError if the file is not glTF, or needs an unsupported extension.
  */
 export async function readGltf(data: ArrayBuffer, url: string, files: MeshFiles, isBinary: boolean): Promise<MeshTemplate> {
   checkHead(headOf(data, isBinary));
@@ -39,7 +39,7 @@ function headOf(data: ArrayBuffer, isBinary: boolean): Head {
   return magic === "glTF" ? headOfGlb(data) : parsed(data, isBinary ? words.magic : words.notJson);
 }
 
-/** The JSON of a GLB, which is its first chunk. */
+/** Returns the JSON of a GLB file, which is its first chunk. */
 function headOfGlb(data: ArrayBuffer): Head {
   const words = strings.meshes.gltf;
   const view = new DataView(data);

@@ -6,16 +6,16 @@ import type { MeshTemplate } from "./mesh-template";
 import type { StandIns } from "./stand-ins";
 import { SharedTextures } from "./shared-textures";
 
-/** Browsers hold no longer text, and no graphics card takes so many triangles. */
+/** Browsers support no longer strings, and no GPU draws so many triangles. */
 const MOST_BYTES = 500_000_000;
 
 interface Shelf {
-  /** What the server said identifies the file's content. */
+  /** The file's ETag or date of modification. */
   version: string | null;
   template: MeshTemplate;
 }
 
-/** Loads mesh files, each once as long as the file does not change. */
+/** Loads mesh files, each only once while it does not change. */
 export class MeshLibrary {
   private readonly shelves = new Map<string, Shelf>();
   private readonly loading = new Map<string, Promise<MeshTemplate>>();
@@ -25,15 +25,15 @@ export class MeshLibrary {
   constructor(
     private readonly progress: MeshProgress,
     readonly files: MeshFiles = SERVED,
-    /** What draws moving meshes with fewer triangles; null: nothing. */
+    /** Simplified versions of meshes for motion; null for none. */
     readonly standIns: StandIns | null = null,
   ) {}
 
   /**
-   * The mesh at `url`. Asks the server every time whether the file is still the same: a robot is loaded again when its
+   * Loads the mesh at `url`. Each call checks whether the file has changed, because a robot is loaded again after its
    * files were edited.
    *
-   * @throws MeshError with a part of a sentence for the user when the mesh cannot be drawn.
+   * @throws MeshError with a clause for the user if the mesh cannot be drawn.
    */
   load(url: string, format: string): Promise<MeshTemplate> {
     let promise = this.loading.get(url);
@@ -63,14 +63,14 @@ export class MeshLibrary {
     const { readMesh } = await import("./formats");
     await report.reads();
     const template = await readMesh(data, format, new URL(url, document.baseURI).href, this.files);
-    // What is still being drawn of the old one goes back to the GPU by itself.
+    // three.js uploads an old geometry that is still being drawn again.
     for (const part of shelf?.template.parts ?? []) part.geometry.dispose();
     this.shelves.set(url, { version, template });
     return template;
   }
 }
 
-/** The data received over the line, or a text that the line broke. */
+/** Waits for data from the server; a lost connection becomes a MeshError. */
 async function reached<T>(answer: Promise<T>): Promise<T> {
   return answer.catch(() => {
     throw new MeshError(strings.meshes.lost);
@@ -105,7 +105,7 @@ function limit(bytes: number): void {
   if (bytes > MOST_BYTES) throw new MeshError(strings.meshes.tooLarge(bytesText(bytes), bytesText(MOST_BYTES)));
 }
 
-/** The server explains a refusal in plain text; its first line will do. */
+/** Returns the reason for a refusal: the first line of the server's plain text. */
 async function refusal(response: Response): Promise<string> {
   if (response.status === 404) return strings.meshes.gone;
   const plain = response.headers.get("Content-Type")?.startsWith("text/plain") ?? false;

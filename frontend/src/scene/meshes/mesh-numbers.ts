@@ -2,20 +2,20 @@ import type { BufferAttribute, BufferGeometry, InterleavedBufferAttribute } from
 import { strings } from "../../strings";
 import { countText, MeshError } from "./mesh-error";
 
-/** Vertices of a geometry that are not finite numbers, and its triangles. */
+/** The number of vertices that are not finite, and of the triangles with such vertices. */
 export interface Unreal {
   vertices: number;
-  /** Those with such a vertex. */
+  /** The triangles with such a vertex. */
   triangles: number;
-  /** All of the geometry. */
+  /** All triangles of the geometry. */
   ofTriangles: number;
 }
 
 type Positions = BufferAttribute | InterleavedBufferAttribute;
 
 /**
- * Makes points of triangles with a vertex that is NaN or infinite: nothing is drawn of them, and bounds hold. The
- * geometry's groups stay.
+ * Collapses triangles with a vertex that is NaN or infinite to a point, so that they are not drawn and bounds are
+ * valid. The geometry's groups stay.
  */
 export function collapseUnreal(geometry: BufferGeometry): Unreal {
   const positions = geometry.getAttribute("position") as Positions | undefined;
@@ -46,9 +46,9 @@ export function collapseUnreal(geometry: BufferGeometry): Unreal {
 }
 
 /**
- * The text about vertices that are not numbers, or null.
+ * Returns the message about vertices that are not finite, or null.
  *
- * @throws MeshError when no triangle is left.
+ * @throws MeshError if no triangle is left.
  */
 export function unrealProblem(found: readonly Unreal[]): string | null {
   const sum = (what: keyof Unreal): number => found.reduce((total, each) => total + each[what], 0);

@@ -3,40 +3,40 @@ import type { MeshoptSimplifier } from "meshoptimizer/simplifier";
 /** The part of meshoptimizer that is used. */
 export type Simplifier = Pick<typeof MeshoptSimplifier, "generatePositionRemap" | "simplifyWithAttributes" | "compactMesh" | "getScale">;
 
-/** Triangles with a normal at each corner: three corners in a row for each, or as the index says. */
+/** Triangles with a normal at each corner: three consecutive corners each, or by index. */
 export interface Triangles {
   readonly positions: Float32Array;
   readonly normals: Float32Array;
   readonly index: Uint32Array | null;
 }
 
-/** Some of the triangles; they differ from the mesh by about this at most, m. */
+/** A level of detail; it differs from the mesh by about `error` at most, m. */
 export interface StandInLevel {
   readonly error: number;
   readonly index: Uint32Array;
 }
 
-/** A mesh in fewer and fewer triangles, which share their vertices. */
+/** A mesh at several levels of detail, which share their vertices. */
 export interface StandIn {
   readonly positions: Float32Array;
   readonly normals: Float32Array;
-  /** From the finest, which has all triangles, to the coarsest. */
+  /** The levels from the finest, which has all triangles, to the coarsest. */
   readonly levels: readonly StandInLevel[];
-  /** A ball around it: x y z of its middle, radius. */
+  /** The bounding sphere: x y z of its centre, radius. */
   readonly ball: readonly [number, number, number, number];
 }
 
-/** The most that a level may be off by, as shares of the mesh's size. */
+/** The maximum errors of the levels, as shares of the mesh's size. */
 const STEPS = [0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1];
-/** A level must save this share of the triangles of the one before. */
+/** A level must have at least this share of triangles fewer than the level before. */
 const WORTH = 0.2;
-/** How much a wrong normal counts, as a share of the mesh's size. */
+/** The weight of errors in normals, as a share of the mesh's size. */
 const NORMAL_WEIGHT = 0.2;
-/** Corners in one place whose normals are at most this far apart share one vertex: the cosine of 30 degrees. */
+/** Corners at one place share a vertex if the cosine between their normals is at least this: 30 degrees. */
 const SMOOTH = 0.866;
 const COMPONENTS = 3;
 
-/** Simplifies a mesh again and again, each time as far as an error allows. */
+/** Simplifies a mesh repeatedly, each time as far as an error permits. */
 export function standIn(mesh: Triangles, simplifier: Simplifier): StandIn {
   const { positions, normals, index } = weld(mesh, simplifier);
   const scale = positions.length > 0 ? simplifier.getScale(positions, COMPONENTS) : 0;
@@ -57,12 +57,17 @@ export function standIn(mesh: Triangles, simplifier: Simplifier): StandIn {
   return { positions, normals, levels, ball: ballAround(positions) };
 }
 
-/** Joins corners that are in one place and have like normals: exporters write each triangle by itself, and simplifying goes along what is joined. */
+/**
+ * Merges corners at the same place with similar normals. Exporters write each triangle separately, but simplification
+ * needs triangles that share vertices.
+ */
 function weld({ positions, normals, index }: Triangles, simplifier: Simplifier): { positions: Float32Array; normals: Float32Array; index: Uint32Array } {
   const place = simplifier.generatePositionRemap(positions, COMPONENTS);
   const corners = index?.length ?? positions.length / COMPONENTS;
   const joined = new Uint32Array(corners);
-  /** Of each place its newest vertex, and of each vertex the one before it there; one more than its number, 0 for none. */
+  /**
+   * The newest vertex at each place, and for each vertex the previous one at its place; numbers plus one, 0 for none.
+   */
   const [newest, before] = [new Uint32Array(place.length), new Uint32Array(corners)];
   const [at, sum] = [new Float32Array(corners * COMPONENTS), new Float32Array(corners * COMPONENTS)];
   const first = new Float32Array(corners * COMPONENTS);
@@ -98,7 +103,7 @@ function weld({ positions, normals, index }: Triangles, simplifier: Simplifier):
   return { positions: at.slice(0, 3 * count), normals: sum.slice(0, 3 * count), index: withArea(joined) };
 }
 
-/** Without the triangles of which two corners are one. */
+/** Returns the triangles without those that have two equal corners. */
 function withArea(index: Uint32Array): Uint32Array {
   let kept = 0;
   for (let i = 0; i + 2 < index.length; i += 3) {

@@ -2,17 +2,17 @@ import type { BufferGeometry } from "three";
 import type { StandIn, Triangles } from "./stand-in";
 import type { StandInAnswer, StandInRequest } from "./stand-in-worker";
 
-/** Of larger meshes no copies are sent to a worker. */
+/** Larger meshes are not copied to a worker. */
 const MOST_CORNERS = 9_000_000;
 
-/** The `Worker` that makes stand-ins, as the page uses it. */
+/** The part of `Worker` that the page uses for stand-ins. */
 export interface StandInWorker {
   onmessage: ((event: MessageEvent<StandInAnswer>) => void) | null;
   onerror: ((event: ErrorEvent) => void) | null;
   postMessage(request: StandInRequest, transfer: Transferable[]): void;
 }
 
-/** Has stand-ins made for meshes, once a caller asks. The worker is not even loaded before. */
+/** Computes stand-ins of meshes on demand; the worker is loaded with the first request. */
 export class StandIns {
   private worker: StandInWorker | null = null;
   private readonly made = new WeakMap<BufferGeometry, readonly StandIn[] | "waits" | "none">();
@@ -21,7 +21,10 @@ export class StandIns {
 
   constructor(private readonly start: () => StandInWorker) {}
 
-  /** One for each group of a geometry, or for all of it; null: not yet. Empty where there is none. */
+  /**
+   * Returns the stand-ins of a geometry, one for each group or one for all of it; null until they are computed, empty
+   * if there are none.
+   */
   of(geometry: BufferGeometry): readonly StandIn[] | null {
     const known = this.made.get(geometry);
     if (known === undefined) this.ask(geometry);
@@ -42,7 +45,7 @@ export class StandIns {
   private begin(): StandInWorker {
     const worker = this.start();
     worker.onmessage = ({ data: { id, standIns } }) => this.answered(id, standIns);
-    // A browser that does not let it run: everything is drawn as it is.
+    // If the browser does not run the worker, everything is drawn in full.
     worker.onerror = () => {
       for (const id of [...this.asked.keys()]) this.answered(id, null);
     };
@@ -56,7 +59,10 @@ export class StandIns {
   }
 }
 
-/** Copies of the triangles of each group; null where they are too many or no plain triangles. */
+/**
+ * Returns copies of the triangles of each group; null if there are too many, or their attributes are not plain float
+ * arrays.
+ */
 function piecesOf(geometry: BufferGeometry): Triangles[] | null {
   const [position, normal] = [geometry.getAttribute("position"), geometry.getAttribute("normal")];
   const corners = geometry.index?.count ?? position.count;

@@ -1,14 +1,14 @@
 import { strings } from "../../strings";
 import { countText, MeshError } from "./mesh-error";
 
-/** Numbers that are none, as C's printf writes them in its dialects: nan, -nan(ind), inf, 1.#QNAN. */
+/** NaN and infinity as the dialects of C's printf write them: nan, -nan(ind), inf, 1.#QNAN. */
 const UNREAL = /^[+-]?(nan|inf|\d\.#(ind|qnan|snan|inf))/i;
 
 /**
  * Reads an ASCII STL: `solid`, then `facet normal`, `outer loop`, three times `vertex`, `endloop`, `endfacet`.
  *
- * @returns x y z of three vertices for each triangle; NaN for a text that is not a finite number.
- * @throws MeshError with the line where it is broken.
+ * @returns x y z of three vertices for each triangle; NaN for a number that is not finite.
+ * @throws MeshError with the line of the error.
  */
 export function readAsciiStl(text: string): Float32Array {
   return new AsciiStl(text).read();
@@ -73,7 +73,7 @@ class AsciiStl {
     return match[0].toLowerCase();
   }
 
-  /** After `solid` stands a name, which may be anything. */
+  /** Skips the name after `solid`, which may be any text. */
   private skipLine(): void {
     const end = this.text.indexOf("\n", this.at);
     this.token.lastIndex = end < 0 ? this.text.length : end;

@@ -8,16 +8,16 @@ import { readAsciiStl } from "./stl-text";
 const HEADER_BYTES = 84;
 const COUNT_AT = 80;
 const TRIANGLE_BYTES = 50;
-/** A triangle begins with its normal, of three floats. */
+/** The size of the normal with which a triangle begins: three floats. */
 const NORMAL_BYTES = 12;
 /** A byte order mark and the like may precede the text. */
 const MOST_BEFORE_TEXT = 5;
 
 /**
- * STL, text or binary. RViz knows no colours in it: the link's material applies. Normals are computed, for exporters
- * leave them at zero.
+ * Reads STL, text or binary. As in RViz, it has no colours: the link's material applies. Normals are computed, because
+ * exporters often leave them at zero.
  *
- * @throws MeshError when it is none, or is broken or cut off.
+ * @throws MeshError if the file is not STL, or is damaged or truncated.
  */
 export function readStl(data: ArrayBuffer): MeshTemplate {
   const positions = isText(data) ? readAsciiStl(new TextDecoder().decode(data)) : readBinary(data);
@@ -29,7 +29,10 @@ export function readStl(data: ArrayBuffer): MeshTemplate {
   return { parts: [{ geometry, materials: [null] }], problem };
 }
 
-/** Binary files may begin with "solid", too: their length tells, and, when they were cut off, the zeros in them. */
+/**
+ * Whether a file is text. Binary files may begin with "solid", too, but have a matching length or, if truncated, zero
+ * bytes.
+ */
 function isText(data: ArrayBuffer): boolean {
   const bytes = new Uint8Array(data);
   const start = String.fromCharCode(...bytes.subarray(0, HEADER_BYTES));

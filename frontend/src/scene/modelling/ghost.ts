@@ -4,7 +4,7 @@ import { unitBox, unitCylinder, unitSphere } from "../objects/geometries";
 import { extrusion } from "../objects/world-geometries";
 import { entityMatrix } from "./entity-pose";
 
-/** What has no shape of its own is shown as a disc on the ground, m. */
+/** The size of the disc on the ground for entities without a shape of their own, m. */
 const DISC = [0.2, 0.2, 0.01] as const;
 
 /** A translucent preview of the entity that is about to be added to the world. */
@@ -20,7 +20,7 @@ export class Ghost {
     this.root.visible = this.root.matrixAutoUpdate = false;
   }
 
-  /** Null for nothing. */
+  /** Shows the preview at a placement; null hides it. */
   show(kind: NewKind, placement: Placement | null): void {
     this.root.visible = placement !== null;
     if (!placement) return;

@@ -8,13 +8,13 @@ import { Gizmo } from "./gizmo";
 import { entityMatrix, entityPose } from "./entity-pose";
 import { worldFrame } from "./world-frame";
 
-/** m or rad: a smaller difference is not a change. */
+/** m or rad; a smaller difference does not count as a change. */
 const NOTHING = 1e-8;
 
-/** Shows entities moved in the world, by the matrices that premultiply their poses. */
+/** Shows entities displaced in the world, by the matrices that premultiply their poses. */
 export type Displace = (moved: ReadonlyMap<string, Matrix4>) => void;
 
-/** The gizmo on what is selected: moved here at once, in the world when it is let go. */
+/** The gizmo on the selection: dragging shows the change immediately, and releasing applies it to the world. */
 export class Manipulation {
   private readonly gizmo: Gizmo;
   private changes: readonly Change[] = [];
@@ -27,7 +27,7 @@ export class Manipulation {
     this.gizmo = new Gizmo(stage);
   }
 
-  /** Puts the gizmo where it belongs. */
+  /** Moves the gizmo to the selection. */
   update(): void {
     const { modelling } = this;
     if (this.gizmo.held) return;
@@ -36,7 +36,7 @@ export class Manipulation {
     this.gizmo.show(shown ? worldFrame(this.stage).multiply(entityMatrix(entity.pose)) : null, modelling.gizmo);
   }
 
-  /** False for an event that others should have. */
+  /** Handles an event; returns false if it is left to others. */
   pointer(event: ToolEvent): boolean {
     const { gizmo } = this;
     if (gizmo.held) {
@@ -50,7 +50,7 @@ export class Manipulation {
     return true;
   }
 
-  /** Lets go without a change; false when nothing is held. */
+  /** Cancels the drag; returns false if none is in progress. */
   cancel(): boolean {
     if (!this.gizmo.held) return false;
     this.gizmo.cancel();
@@ -71,7 +71,7 @@ export class Manipulation {
     else this.carry(entities, main);
   }
 
-  /** False for a mere click, which is for what is behind the handle. */
+  /** Ends the drag; returns false for a mere click, which is meant for what is behind the handle. */
   private letGo(event: ToolEvent): boolean {
     const { changes } = this;
     this.gizmo.release(event);
@@ -81,7 +81,7 @@ export class Manipulation {
     return changes.length > 0;
   }
 
-  /** All go with the entity that the gizmo is on. */
+  /** Moves all selected entities together with the one that has the gizmo. */
   private carry(entities: readonly WorldEntity[], main: WorldEntity): void {
     const to = worldFrame(this.stage).invert().multiply(this.gizmo.pose);
     const by = to.multiply(entityMatrix(main.pose).invert());

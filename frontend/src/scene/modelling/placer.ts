@@ -7,13 +7,13 @@ import type { ToolEvent } from "../tools/tool";
 import { Ghost } from "./ghost";
 import { groundAt, worldFrame } from "./world-frame";
 
-/** Puts what is in hand onto the ground: by a click, a wall by dragging or by two clicks. */
+/** Places the chosen entity on the ground: with a click, or a wall by dragging or with two clicks. */
 export class Placer {
   private readonly ghost = new Ghost();
-  /** The world's frame. */
+  /** A group in the world's frame. */
   private readonly world = new Group();
   private start: Place | null = null;
-  /** The wall's first end was clicked; the second will be. */
+  /** Whether the first end of a wall was clicked, so that the next click is its second end. */
   private clicked = false;
 
   constructor(
@@ -26,7 +26,7 @@ export class Placer {
     modelling.toolChanged.on(() => this.reset());
   }
 
-  /** False for an event that others should have. */
+  /** Handles an event; returns false if it is left to others. */
   pointer(event: ToolEvent): boolean {
     const { placing } = this.modelling;
     if (!placing || event.type === "wheel") return false;
@@ -39,7 +39,7 @@ export class Placer {
     return false;
   }
 
-  /** Puts something where the pointer is. */
+  /** Places an entity at the pointer. */
   drop(placing: Placing, x: number, y: number): void {
     const at = this.ground(x, y, false);
     if (at && placing.kind !== "wall") this.put(placing, placementAt(placing.kind, at), false);
