@@ -13,7 +13,7 @@ import {
 } from "three";
 import { OPAQUE_FROM } from "../materials";
 
-/** Cells along a side of a part; every graphics library takes textures of that size. */
+/** Cells along each side of a part; every graphics library supports textures of this size. */
 const PART = 4096;
 
 const VERTEX = /* glsl */ `
@@ -36,20 +36,20 @@ const FRAGMENT = /* glsl */ `
   }
 `;
 
-/** The look of cells. */
+/** How cells are drawn. */
 export interface CellLook {
-  /** 256 times red, green, blue and alpha: the colours of the bytes. */
+  /** The colours of the byte values: 256 times red, green, blue and alpha. */
   palette: Uint8Array;
   alpha: number;
-  /** Some colours of the palette let something through. */
+  /** Whether some colours of the palette are transparent. */
   seeThrough: boolean;
-  /** Before everything else, which is then drawn over it wherever it is. */
+  /** Whether the plane is drawn before everything else, which then covers it regardless of depth. */
   behind: boolean;
-  /** Among planes at one place, the higher one covers. */
+  /** The render order: among coplanar planes, the one with the higher order covers the others. */
   order: number;
 }
 
-/** A plane of square cells along x and y, from the origin on, each a byte that a palette colours. */
+/** A plane of square cells along x and y from the origin; a palette maps the byte of each cell to a colour. */
 export class CellPlane {
   readonly root = new Group();
   private parts: Mesh<PlaneGeometry, ShaderMaterial>[] = [];
@@ -57,7 +57,7 @@ export class CellPlane {
   private look: CellLook | null = null;
   private size = "";
 
-  /** Takes cells row by row; `resolution` is the side of a cell, m. */
+  /** Sets the cells, row by row; `resolution` is the side of a cell, m. */
   setCells(cells: Uint8Array, width: number, height: number, resolution: number): void {
     const size = [width, height, resolution].join();
     if (size !== this.size) {
@@ -84,7 +84,7 @@ export class CellPlane {
     this.palette.value.needsUpdate = true;
     const seeThrough = look.alpha < OPAQUE_FROM || look.seeThrough;
     for (const { material } of this.parts) {
-      // What is drawn behind must come before all that hides nothing, too: it is blended, but no see-through material.
+      // A plane drawn behind must precede transparent objects, too: it is blended, but does not count as transparent.
       material.transparent = seeThrough && !look.behind;
       material.blending = CustomBlending;
       material.depthWrite = !seeThrough && !look.behind;
@@ -144,7 +144,7 @@ function texture(data: Uint8Array, width: number, height: number): DataTexture {
   return made;
 }
 
-/** The cells of a part, from the row-by-row cells of the whole. */
+/** Copies the cells of a part from the row-by-row cells of the whole. */
 function copy(cells: Uint8Array, width: number, left: number, bottom: number, map: DataTexture): void {
   const { data, width: columns, height: rows } = map.image;
   const target = data as Uint8Array;

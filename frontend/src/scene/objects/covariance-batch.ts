@@ -3,13 +3,13 @@ import { CopyBatch } from "./copy-batch";
 import { principalAxes } from "./eigen";
 import { ballGeometry, canGeometry, coneGeometry } from "./geometries";
 
-/** RViz's CovarianceProperty; null where a part is not drawn. Colours as 0xrrggbb. */
+/** RViz's CovarianceProperty; null for a part that is not drawn. Colours as 0xrrggbb. */
 export interface CovarianceStyle {
   position: { color: number; alpha: number; scale: number } | null;
   orientation: {
-    /** Deviations about the axes of the pose, not of the frame it is given in. */
+    /** Whether deviations are about the axes of the pose instead of those of its frame. */
     local: boolean;
-    /** For the rotations about x, y and z. */
+    /** The colours of the rotations about x, y and z. */
     colors: readonly [number, number, number];
     alpha: number;
     offset: number;
@@ -17,16 +17,16 @@ export interface CovarianceStyle {
   } | null;
 }
 
-/** Thickness of flat shapes. */
+/** The thickness of flat shapes, m. */
 const FLAT = 0.001;
-/** Angles as large as this and larger look alike. */
+/** Larger angles are clamped to this, because they look alike. */
 const MOST_RADIANS = (89 * Math.PI) / 180;
 const SEGMENTS = 24;
 
 /**
- * How uncertain poses are, in three draw calls: an ellipsoid for the position and, for the orientation, a disc on each
- * axis that shows the possible tilt of the axis. A pose in a plane (no deviation in z, roll and pitch) has an ellipse and a
- * triangle that shows its possible turn. All of it as RViz's CovarianceVisual.
+ * The covariances of poses in three draw calls: an ellipsoid for the position and, for the orientation, a disc on each
+ * axis that shows its possible tilt. A planar pose (no deviation in z, roll and pitch) has an ellipse, and a triangle
+ * that shows its possible rotation. All of it is drawn as by RViz's CovarianceVisual.
  */
 export class CovarianceBatch {
   private readonly balls: CopyBatch;
@@ -42,7 +42,7 @@ export class CovarianceBatch {
     this.cones = new CopyBatch(parent, coneGeometry(SEGMENTS));
   }
 
-  /** Starts over; at most `expected` poses will follow. */
+  /** Removes all covariances; at most `expected` poses will be added. */
   begin(expected: number): void {
     this.balls.begin(expected);
     this.discs.begin(expected * 3);
@@ -52,9 +52,9 @@ export class CovarianceBatch {
   /**
    * Adds the covariance of a pose.
    *
-   * @param frame the frame that the pose is given in.
-   * @param pose x, y, z, qx, qy, qz, qw in that frame.
-   * @param covariance 36 numbers, row by row over x, y, z and the rotations about them.
+   * @param frame - the pose of the frame in which `pose` is given.
+   * @param pose - x, y, z, qx, qy, qz, qw in that frame.
+   * @param covariance - 36 numbers, row by row over x, y, z and the rotations about them.
    */
   add(frame: Matrix4, pose: Float32Array, covariance: Float32Array, style: CovarianceStyle): void {
     const c = (row: number, column: number): number => covariance[row * 6 + column] ?? 0;
@@ -94,12 +94,12 @@ export class CovarianceBatch {
     for (const batch of [this.balls, this.discs, this.cones]) batch.dispose();
   }
 
-  /** Its tip is at the pose, its base `offset` along x. */
+  /** Adds a triangle with its tip at the pose and its base at `offset` along x. */
   private addTriangle(variance: number, style: NonNullable<CovarianceStyle["orientation"]>): void {
     const { offset, scale, alpha, colors } = style;
     if (!(variance >= 0) || offset <= 0) return;
     const width = offset * opening(2 * Math.sqrt(variance) * scale);
-    // The cone of the batch has its base at the origin and its tip along x.
+    // The batch's cone has its base at the origin and its tip along x: turn it around.
     this.matrix.makeTranslation(offset, 0, 0).premultiply(this.root);
     this.cones.add(this.matrix.multiply(this.scale.makeScale(-offset, -thick(width), FLAT)), 0, alpha, colors[2]);
   }
@@ -122,8 +122,8 @@ export class CovarianceBatch {
 }
 
 /**
- * For each axis: z is that axis, and x and y are where rotations about the two axes after it move it. RViz has these two
- * the other way round for z.
+ * For each axis: z is that axis, and x and y are the directions in which rotations about the two following axes move
+ * it. For the z axis, RViz swaps these two.
  */
 const DISCS = [
   new Matrix4().makeBasis(new Vector3(0, 0, 1), new Vector3(0, -1, 0), new Vector3(1, 0, 0)),
@@ -133,7 +133,9 @@ const DISCS = [
 
 type Matrix3Rows = Parameters<typeof principalAxes>[0];
 
-/** Standard deviations along their axes; null for rows that are not a covariance; RViz does not draw them either. */
+/**
+ * Returns standard deviations and their axes; null for rows that are not a covariance, which RViz does not draw either.
+ */
 function spread(rows: Matrix3Rows): { deviations: number[]; axes: Matrix4 } | null {
   const { values, axes } = principalAxes(rows);
   const most = Math.max(...values.map(Math.abs));
@@ -141,7 +143,7 @@ function spread(rows: Matrix3Rows): { deviations: number[]; axes: Matrix4 } | nu
   return { deviations: values.map((value) => Math.sqrt(Math.max(0, value))), axes };
 }
 
-/** The width of an angle at a distance of one metre. */
+/** Returns the width of an angle at a distance of one metre. */
 function opening(radians: number): number {
   return 2 * Math.tan(Math.min(radians / 2, MOST_RADIANS));
 }

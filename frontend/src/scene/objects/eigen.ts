@@ -1,9 +1,9 @@
 import { Matrix4 } from "three";
 
-/** Principal values of a symmetric matrix and, as columns of a rotation, their axes. */
+/** The eigenvalues of a symmetric matrix, and its eigenvectors as columns of a rotation. */
 export interface Principal {
   values: [number, number, number];
-  /** Right-handed. */
+  /** The axes, right-handed. */
   axes: Matrix4;
 }
 
@@ -15,9 +15,9 @@ const PLANES = [
 ] as const;
 
 /**
- * Principal axes by Jacobi's rotations.
+ * Computes principal axes by Jacobi rotations.
  *
- * @param m row by row; only the upper triangle is read.
+ * @param m - row by row; only the upper triangle is read.
  */
 export function principalAxes(m: readonly [number, number, number, number, number, number, number, number, number]): Principal {
   const a = [

@@ -39,8 +39,8 @@ const FRAGMENT = /* glsl */ `
 `;
 
 /**
- * Lines with a width in metres that turn towards the camera: RViz's billboard lines. One draw call, unlit; no GPU
- * instancing, see `CopyBatch`.
+ * Lines with a width in metres that face the camera: RViz's billboard lines. They are unlit and need one draw call,
+ * without GPU instancing, see `CopyBatch`.
  */
 export class WideLines {
   readonly root: Mesh<BufferGeometry, ShaderMaterial>;
@@ -56,12 +56,15 @@ export class WideLines {
     this.root.visible = false;
   }
 
-  /** Segments between pairs of points: x y z of both ends of each; `colors` r g b a of both ends, 0 to 1. */
+  /** Sets segments by x y z of both ends of each; `colors` has r g b a of both ends, 0 to 1. */
   setSegments(segments: Float32Array, colors: Float32Array | null = null): void {
     this.setStrips(stripsOf(segments), colors && stripsOf(colors, 4));
   }
 
-  /** Lines through the points of each strip; `colors` r g b a of each point, 0 to 1, multiplied with the style's. */
+  /**
+   * Sets lines through the points of each strip; `colors` has r g b a of each point, 0 to 1, multiplied by the style's
+   * colour.
+   */
   setStrips(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): void {
     const made = ribbons(strips, colors);
     const geometry = new BufferGeometry().setIndex(new BufferAttribute(made.indices, 1));
@@ -75,7 +78,7 @@ export class WideLines {
     this.settle();
   }
 
-  /** `width` in metres. */
+  /** Sets the style; `width` in m. */
   setStyle(color: ColorRepresentation, opacity: number, width: number): void {
     const { r, g, b } = new Color(color);
     const { uniforms } = this.root.material;
@@ -85,7 +88,7 @@ export class WideLines {
     this.settle();
   }
 
-  /** Makes `box` hold the middle of all lines, in the parent's frame. */
+  /** Expands `box` by the centre lines, in the parent's frame. */
   expandBox(box: Box3): void {
     if (this.root.visible) box.expandByObject(this.root);
   }
