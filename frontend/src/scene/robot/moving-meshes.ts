@@ -15,17 +15,17 @@ import { TOUCHED } from "../layers";
 import type { StandIn } from "../meshes/stand-in";
 import { litSlotMaterial, slotTexture, writeSlot } from "../objects/slot-material";
 
-/** The size of a difference that no user sees in a moving image, in its pixels. */
+/** The largest error that is not noticed in a moving frame, in its pixels. */
 const UNSEEN = 1;
 
-/** The moving image for which stand-ins are drawn. */
+/** The moving frame for which stand-ins are drawn. */
 export interface MovingView {
   readonly camera: Camera;
-  /** Its own pixels, which may be larger than those of the screen. */
+  /** The height in pixels of the frame, which may be larger than those of the screen. */
   readonly height: number;
 }
 
-/** A piece of a mesh with the colour 0xrrggbb, where it is. */
+/** A piece of a mesh with its matrix and its colour 0xrrggbb. */
 export interface MovingPiece {
   readonly standIn: StandIn;
   readonly matrix: Matrix4;
@@ -33,13 +33,15 @@ export interface MovingPiece {
 }
 
 /**
- * Draws the meshes of a robot that moves all in one draw call, each in as few triangles as look the same. Software
- * renderers take some 0.3 microseconds for each triangle, and 100 for each draw call.
+ * Draws all meshes of a moving robot in one draw call, each with as few triangles as look the same. Software renderers
+ * take some 0.3 microseconds for each triangle, and 100 for each draw call.
  */
 export class MovingMeshes {
   private mesh: Mesh<BufferGeometry, ReturnType<typeof litSlotMaterial>> | null = null;
   private readonly slots: { value: DataTexture } = { value: slotTexture(0) };
-  /** What is in the buffers: the pieces' stand-ins, the number of the first vertex of each, and the levels drawn. */
+  /**
+   * The contents of the buffers: the pieces' stand-ins, the index of the first vertex of each, and the levels drawn.
+   */
   private held: readonly StandIn[] = [];
   private firsts: number[] = [];
   private levels: readonly (number | null)[] = [];
@@ -48,18 +50,18 @@ export class MovingMeshes {
 
   constructor(private readonly parent: Object3D) {}
 
-  /** Whether they are lit softly, and not as RViz does. */
+  /** Whether the meshes have the soft light instead of RViz's. */
   set isSoft(isSoft: boolean) {
     this.softness.value = isSoft;
   }
 
-  /** Pieces and triangles drawn last. */
+  /** The number of pieces and triangles drawn last. */
   get drawn(): { pieces: number; triangles: number } {
     const pieces = this.levels.filter((level) => level !== null).length;
     return { pieces, triangles: (this.mesh?.geometry.drawRange.count ?? 0) / 3 };
   }
 
-  /** Draws pieces in place of meshes, until `end`. */
+  /** Draws pieces instead of meshes, until `end`. */
   begin(pieces: readonly MovingPiece[], meshes: readonly Mesh[], view: MovingView): void {
     const mesh = this.hold(pieces);
     pieces.forEach(({ matrix, color }, slot) => writeSlot(this.texels, slot, matrix, color));
@@ -90,7 +92,7 @@ export class MovingMeshes {
     return this.slots.value.image.data as Float32Array;
   }
 
-  /** Has the vertices of all pieces in one buffer; each knows its piece by a number. */
+  /** Fills one buffer with the vertices of all pieces; each vertex has the index of its piece. */
   private hold(pieces: readonly MovingPiece[]): NonNullable<MovingMeshes["mesh"]> {
     const { held } = this;
     if (this.mesh && held.length === pieces.length && pieces.every(({ standIn }, i) => standIn === held[i])) return this.mesh;
@@ -124,7 +126,7 @@ export class MovingMeshes {
     return this.mesh;
   }
 
-  /** Puts into the index what the camera sees, each piece as coarse as is not seen. */
+  /** Fills the index with the visible pieces, each at the coarsest level whose error is not noticed. */
   private arrange(geometry: BufferGeometry, pieces: readonly MovingPiece[], view: MovingView): void {
     const levels = levelsFor(pieces, view);
     if (levels.length === this.levels.length && levels.every((level, i) => level === this.levels[i])) return;
@@ -144,7 +146,9 @@ export class MovingMeshes {
   }
 }
 
-/** The number of the coarsest level of each piece that looks as the finest does; null for what the camera does not see. */
+/**
+ * Returns for each piece the index of the coarsest level that looks like the finest; null for pieces outside the view.
+ */
 export function levelsFor(pieces: readonly MovingPiece[], { camera, height }: MovingView): (number | null)[] {
   const { elements } = camera.projectionMatrix;
   const isPerspective = elements[11] !== 0;

@@ -14,50 +14,50 @@ import { poseMatrix } from "../pose";
 import { capsule, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
 import { solidKind, type SolidKind } from "./solids";
 
-/** m, and parts of rotation matrices. */
+/** The tolerance for equal poses: m, and elements of rotation matrices. */
 const SAME_PLACE = 1e-6;
 
-/** A part of a shape: what is drawn, and with which materials of the file's own. */
+/** A part of a shape: its mesh, and the materials from the file. */
 interface Part {
   mesh: Mesh;
   own: readonly (OwnMaterial | null)[];
 }
 
-/** A shape that is drawn in a batch of its kind, and not by a mesh of its own. */
+/** A shape that is drawn in a batch instead of as a mesh of its own. */
 export interface Solid {
   readonly kind: SolidKind;
-  /** From the shape of size one to the link. */
+  /** The matrix from the unit shape to the link. */
   readonly matrix: Matrix4;
-  /** 0xrrggbb */
+  /** The colour, 0xrrggbb. */
   readonly color: number;
 }
 
 /** A piece of a shape that may be drawn together with others while the robot moves. */
 export interface ShapePiece {
   readonly standIn: StandIn;
-  /** From the mesh to the link. */
+  /** The matrix from the mesh to the link. */
   readonly matrix: Matrix4;
-  /** 0xrrggbb */
+  /** The colour, 0xrrggbb. */
   readonly color: number;
 }
 
-/** See `ShapeDrawing.tell`. */
+/** The result of `ShapeDrawing.inspect`. */
 export interface ShapeTold {
   kind: string;
   bounds: { min: number[]; max: number[] } | null;
   materials: { color: string; opacity: number; textured: boolean; reflects?: true }[];
 }
 
-/** One visual or collision of a link. */
+/** The drawing of one visual or collision of a link. */
 export class ShapeDrawing {
   readonly root = new Group();
   private parts: Part[] = [];
   private texture: Texture | null = null;
   private surface: Surface | null = null;
   private library: MeshLibrary | null = null;
-  /** The addresses of the library's textures that it has. */
+  /** The addresses of the library's textures that this shape uses. */
   private readonly worn: string[] = [];
-  /** Its own, which it must free. */
+  /** A geometry of its own, which it must dispose of. */
   private made: BufferGeometry | null = null;
   private problem: string | null = null;
   private together: Solid | null = null;
@@ -72,12 +72,12 @@ export class ShapeDrawing {
     this.root.matrixAutoUpdate = false;
   }
 
-  /** False for a mesh that is not there (yet). */
+  /** Whether the shape is drawn; false for a mesh that is not loaded. */
   get drawn(): boolean {
     return this.parts.length > 0;
   }
 
-  /** Its entry in a batch; its mesh then serves rays and outlines only. */
+  /** Its entry in a batch, if any; its mesh then serves rays and outlines only. */
   get solid(): Solid | null {
     return this.together;
   }
@@ -87,10 +87,10 @@ export class ShapeDrawing {
   }
 
   /**
-   * Fetches what the shape needs: its mesh, its texture.
+   * Loads the shape's mesh and textures.
    *
    * @returns what is missing although the shape is drawn, or null.
-   * @throws Error when the mesh cannot be drawn.
+   * @throws Error if the mesh cannot be drawn.
    */
   async load(library: MeshLibrary): Promise<string | null> {
     const { kind, url, format, texture, surface } = this.shape;
@@ -120,9 +120,10 @@ export class ShapeDrawing {
   }
 
   /**
-   * Paints with the robot's and the link's alpha multiplied in; `lost` is RViz's white of links without transform.
+   * Applies materials; `alpha` includes that of the robot and the link, and `lost` means RViz's white of links without
+   * a transform.
    *
-   * @param instead takes the place of all colours and textures.
+   * @param instead - replaces all colours and textures.
    */
   paint(pool: MaterialPool, alpha: number, lost: boolean, instead: Instead | null = null): void {
     for (const { mesh, own } of this.parts) {
@@ -140,9 +141,9 @@ export class ShapeDrawing {
   }
 
   /**
-   * Adds the meshes whose shapes stand-ins have, and the pieces of these.
+   * Adds the meshes that stand-ins can replace, and the pieces of these stand-ins.
    *
-   * @returns whether all expected stand-ins are complete.
+   * @returns whether all requested stand-ins are available.
    */
   addPieces(standIns: StandIns, meshes: Mesh[], pieces: ShapePiece[]): boolean {
     let complete = true;
@@ -164,14 +165,14 @@ export class ShapeDrawing {
     return complete;
   }
 
-  /** Whether the description has it at a pose of its link. */
+  /** Whether the description places the shape at a pose in its link. */
   isAt(pose: Matrix4): boolean {
     const [x = 0, y = 0, z = 0] = this.shape.position;
     const place = poseMatrix([x, y, z, ...this.shape.quaternion], new Matrix4());
     return place.elements.every((value, i) => Math.abs(value - (pose.elements[i] ?? NaN)) < SAME_PLACE);
   }
 
-  /** Is drawn at another pose of its link; null for that of the description. */
+  /** Draws the shape at another pose in its link; null restores that of the description. */
   displace(pose: Matrix4 | null): void {
     if (pose) this.root.matrix.copy(pose);
     else this.root.updateMatrix();
@@ -181,7 +182,7 @@ export class ShapeDrawing {
     this.together = { ...this.together, matrix: new Matrix4().multiplyMatrices(this.root.matrix, part.mesh.matrix) };
   }
 
-  /** What is drawn, for tests: bounds in the fixed frame, and colour, opacity and texture of each material. */
+  /** Returns what is drawn, for tests: bounds in the fixed frame, and colour, opacity and texture of each material. */
   tell(): ShapeTold {
     const box = new Box3();
     for (const { mesh } of this.parts) {
@@ -243,7 +244,7 @@ export class ShapeDrawing {
     this.freeze();
   }
 
-  /** A part that no other shape shares. */
+  /** Builds a part with a geometry that no other shape shares. */
   private buildPart(geometry: BufferGeometry): void {
     this.addPart(geometry, [null]);
     this.made = geometry;
@@ -289,9 +290,9 @@ export class ShapeDrawing {
   }
 
   /**
-   * RViz's rule: a part with a material of its own keeps it; any other takes the URDF's. Without one, a shape or STL is
-   * RViz's red and another mesh the grey that RViz's mesh reader puts in. How opaque a part is says the URDF alone:
-   * RViz does not read it from mesh files, where exporters often write it wrongly.
+   * Returns a look by RViz's rule: a part with a material of its own keeps it, and any other takes the URDF's. Without
+   * one, a primitive or STL is RViz's red, and another mesh the grey that RViz's mesh reader sets. Only the URDF sets
+   * the opacity of a part: RViz does not read it from mesh files, where exporters often write it wrongly.
    */
   private look(own: OwnMaterial | null, alpha: number, instead: Instead | null): Look {
     if (instead) return { color: instead.color, map: null, vertexColors: false, alpha, doubleSided: true, behind: instead.behind === true };
@@ -310,7 +311,7 @@ export class ShapeDrawing {
   }
 }
 
-/** Whether a surface shows its colour in the light of the camera, and nothing else. */
+/** Whether a surface has a plain opaque colour and the camera's light only. */
 function isPlain(material: Material): material is MeshLambertMaterial {
   if (!(material instanceof MeshLambertMaterial) || material.side !== DoubleSide) return false;
   return material.map === null && !material.vertexColors && !material.transparent;

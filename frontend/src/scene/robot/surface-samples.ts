@@ -1,31 +1,31 @@
 import { Triangle, Vector3, type BufferGeometry, type Mesh } from "three";
 import type { Vector } from "../../state/views/vector";
 
-/** Points of a surface. */
+/** The number of sample points of a surface. */
 const POINTS = 320;
-/** One sample in so many is enough to frame a robot. */
+/** To frame a robot, every n-th sample is enough. */
 const FEWER = 4;
-/** Steps of the R2 sequence, which fills a triangle evenly. */
+/** The steps of the R2 sequence, which fills a triangle evenly. */
 const [STEP_A, STEP_B] = [0.7548776662, 0.5698402909];
 
-/** Points that are spread evenly over a surface. */
+/** Points distributed evenly over a surface. */
 export interface SurfaceSamples {
-  /** x y z of each, m. */
+  /** x y z of each point, m. */
   readonly points: Float32Array;
-  /** The area that each represents, m^2. */
+  /** The area that each point represents, m^2. */
   readonly area: number;
 }
 
 const known = new WeakMap<BufferGeometry, SurfaceSamples>();
 
-/** The points of a geometry, in its own frame; found once. */
+/** Returns the samples of a geometry in its own frame; they are computed once. */
 export function samplesOf(geometry: BufferGeometry): SurfaceSamples {
   let samples = known.get(geometry);
   if (!samples) known.set(geometry, (samples = spread(geometry)));
   return samples;
 }
 
-/** Some points on the surface of a mesh that has its place, in the fixed frame. */
+/** Returns some points on the surface of a mesh, whose world matrix must be current, in the fixed frame. */
 export function pointsOn({ geometry, matrixWorld }: Mesh): Vector[] {
   const { points } = samplesOf(geometry);
   const found: Vector[] = [];
