@@ -2,7 +2,7 @@ import { strings } from "../../strings";
 import { shown } from "./point-text";
 import type { SceneTool, ToolContext, ToolEvent } from "./tool";
 
-/** RViz's Focus Camera: the camera looks at the point that is clicked, or in its direction where there is none. */
+/** RViz's Focus Camera: a click looks at the point under the pointer, or in its direction if there is none. */
 export class FocusCameraTool implements SceneTool {
   constructor(private readonly context: ToolContext) {}
 

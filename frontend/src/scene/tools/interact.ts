@@ -8,10 +8,10 @@ interface Focus {
   hit: Hit;
 }
 
-/** RViz's Interact: moves things that can be moved, and the camera where there is none under the pointer. */
+/** RViz's Interact: moves objects that can be moved, or else the camera. */
 export class InteractTool implements SceneTool {
   private readonly camera: MoveCameraTool;
-  /** What is under the pointer, and what is held. */
+  /** The object under the pointer, and the object being dragged. */
   private focus: Focus | null = null;
   private held: Focus | null = null;
 
@@ -37,7 +37,7 @@ export class InteractTool implements SceneTool {
       if (event.type === "up" && !pressed) this.release(event);
       return;
     }
-    // A button that was pressed beside things moves the camera, whatever it comes over.
+    // A button pressed outside objects moves the camera, even when the pointer moves over an object.
     const free = event.type === "down" || event.type === "wheel" || !pressed;
     if (free) this.refocus(event);
     const { focus } = this;
@@ -57,7 +57,7 @@ export class InteractTool implements SceneTool {
     this.refocus(event);
   }
 
-  /** Finds the drawing under the pointer now; notifies drawings when the pointer enters and leaves them. */
+  /** Finds the object under the pointer, and notifies drawings when the pointer enters or leaves their objects. */
   private refocus(event: ToolEvent): void {
     const { stage } = this.context;
     const found = event.type !== "leave" && stage.isInteractive ? stage.picker.at(event.x, event.y) : null;

@@ -7,10 +7,13 @@ import { ThinLines } from "../objects/thin-lines";
 import type { SceneTool, ToolContext, ToolEvent } from "./tool";
 
 const DARK_YELLOW = "#808000";
-/** The height of a line of the label, pixels of the page. */
+/** The height of the label, CSS pixels. */
 const LABEL_PX = 20;
 
-/** RViz's Measure: the distance between two points that are clicked, shown at the middle of the line, too; a right click starts again. */
+/**
+ * RViz's Measure: the distance between two clicked points, which is also shown at the middle of the line; a right click
+ * starts again.
+ */
 export class MeasureTool implements SceneTool {
   private readonly line = new ThinLines();
   private readonly label = new LabelBatch();
@@ -21,7 +24,7 @@ export class MeasureTool implements SceneTool {
 
   constructor(private readonly context: ToolContext) {
     context.stage.viewport.scene.add(this.line.root, this.label.root);
-    // Points on two sides of a body are measured too: the line is drawn over what it goes through, as its label is.
+    // Draw the line and its label over the objects between its ends, which may be on two sides of a body.
     this.line.root.material.depthTest = false;
     this.line.root.renderOrder = 1;
     this.forget = context.session.view.changed.on(() => this.placeLabel());
@@ -60,12 +63,12 @@ export class MeasureTool implements SceneTool {
     this.context.stage.loop.invalidate();
   }
 
-  /** Metres; null before there are two points. */
+  /** The distance, m; null before there are two points. */
   private get length(): number | null {
     return this.start && this.end ? distanceBetween(this.start, this.end) : null;
   }
 
-  /** A drag that ends over empty space is not for it. */
+  /** Handles the release of the button. A drag that ends over empty space is meant for the camera. */
   private released(point: Vector | null, isClick: boolean): void {
     if (point) this.clicked(point);
     if (point || isClick) this.context.tell(point ? "" : strings.tools.hints.nothingThere);

@@ -2,7 +2,7 @@ import { strings } from "../../strings";
 import { shown } from "./point-text";
 import type { SceneTool, ToolContext, ToolEvent } from "./tool";
 
-/** RViz's Publish Point: publishes the point of the thing that is clicked. */
+/** RViz's Publish Point: publishes the clicked point of an object. */
 export class PublishPointTool implements SceneTool {
   constructor(private readonly context: ToolContext) {}
 

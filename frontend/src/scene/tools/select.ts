@@ -5,7 +5,9 @@ import { strings } from "../../strings";
 import { MoveCameraTool } from "./move-camera";
 import type { SceneTool, ToolContext, ToolEvent } from "./tool";
 
-/** RViz's Select: a click or a rectangle; Shift adds, Ctrl takes away, Alt moves the camera, F looks at what is selected. */
+/**
+ * RViz's Select: click or drag a rectangle. Shift adds, Ctrl removes, Alt moves the camera, F looks at the selection.
+ */
 export class SelectTool implements SceneTool {
   readonly grabsKeys = true;
   private readonly camera: MoveCameraTool;

@@ -5,10 +5,10 @@ import { TOOLS } from "./catalog";
 import { MoveCameraTool } from "./move-camera";
 import type { SceneTool, ToolContext } from "./tool";
 
-/** The tools of the toolbar at work: one of them has the mouse. */
+/** The tools of the toolbar, of which the active one handles the mouse. */
 export class Toolbox {
   private readonly made = new Map<string, { state: ToolState; tool: SceneTool }>();
-  /** In hand while there is no tool at all. */
+  /** The tool that is active while the toolbar has none. */
   private readonly fallback: SceneTool;
   private inHand: SceneTool;
 
@@ -21,7 +21,7 @@ export class Toolbox {
     this.fallback.activate?.();
     tools.currentChanged.on((state) => this.take(state));
     tools.valueChanged.on((state) => this.made.get(state.id)?.tool.settingsChanged?.());
-    // The mouse does other things in another class of view.
+    // In another class of view the mouse works differently: update the tool's hint.
     let { cls } = view.current;
     view.changed.on(() => {
       if (cls === view.current.cls) return;
@@ -53,7 +53,7 @@ export class Toolbox {
     return tool;
   }
 
-  /** Releases tools that the server has removed or sent again. */
+  /** Disposes of tools that the server has removed or replaced. */
   private tidy(): void {
     const { tools } = this.session.tools;
     for (const [id, { state, tool }] of this.made) {
