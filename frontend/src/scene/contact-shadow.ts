@@ -1,30 +1,33 @@
 import { Box3, DataTexture, Group, LinearFilter, Mesh, MeshBasicMaterial, PlaneGeometry, Vector3 } from "three";
 import { samplesOf } from "./robot/surface-samples";
 
-/** Texels along each side of the image of the shadow. */
+/** Texels along each side of the shadow's image. */
 const TEXELS = 96;
-/** The width of the ground that the image shows, in widths of the robot on it. */
+/** The width of the ground that the image covers, in widths of the robot. */
 const WIDER = 1.7;
-/** How dark it is at most. */
+/** The maximum darkness. */
 const DARKEST = 0.62;
-/** At this height above the ground, in sizes of the robot on it, a surface shades it less by a factor of e. */
+/**
+ * The heights above the ground, in sizes of the robot, over which the shade of a surface decreases by a factor of e:
+ * near the ground, and far from it.
+ */
 const [NEAR, FAR] = [0.05, 0.35];
-/** How much of the shade of a surface comes from afar. */
+/** The weight of the shade from far surfaces. */
 const FROM_AFAR = 0.35;
-/** Texels to each side that shade spreads, as often as given. */
+/** The radius of the blur in texels, and the number of its passes. */
 const [SPREAD, TIMES] = [2, 3];
-/** Drawn first of the transparent objects, so that lines on the ground cover it. */
+/** The shadow is drawn first among transparent objects, so that lines on the ground cover it. */
 const FIRST = -1;
 
 const place = new Vector3();
 
 /**
- * The shade that a robot casts on the ground by being there, as on a cloudy day. It is computed of a few points of each
- * surface, and only where the robot moved: no light and no image of the scene is needed for it.
+ * The ambient shadow of a robot on the ground, as on a cloudy day. It is computed from a few points of each surface,
+ * and only when the robot moved, without a light or a further rendering of the scene.
  */
 export class ContactShadow {
   readonly root = new Group();
-  /** The part of the ground that the image of the shadow is on. */
+  /** The plane that shows the image of the shadow. */
   readonly ground: Mesh<PlaneGeometry, MeshBasicMaterial>;
   private readonly pixels = new Uint8Array(4 * TEXELS * TEXELS);
   private readonly texture = new DataTexture(this.pixels, TEXELS, TEXELS);
@@ -40,7 +43,10 @@ export class ContactShadow {
     this.root.add(this.ground);
   }
 
-  /** Falls from meshes, which have their places, on a ground of this height in the fixed frame, m. */
+  /**
+   * Computes the shadow of meshes, whose world matrices must be current, on a ground at this height in the fixed frame,
+   * m.
+   */
   fall(meshes: readonly Mesh[], height: number): void {
     const key = meshes.reduce((sum, { matrixWorld }, i) => matrixWorld.elements.reduce((all, each, k) => all + each * (i + k + 1), sum), height);
     if (key === this.fallen) return;
@@ -74,7 +80,7 @@ export class ContactShadow {
     }
   }
 
-  /** Takes the mean over a square around each texel. */
+  /** Replaces each texel by the mean of a square around it. */
   private spread(): void {
     for (const step of [1, TEXELS]) {
       const [from, to] = [this.shade, this.spare];

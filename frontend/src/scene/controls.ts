@@ -3,16 +3,16 @@ import { strings } from "../strings";
 import type { Stage } from "./stage";
 import type { PointerButton, ToolEvent } from "./tools/tool";
 
-/** A press that moves less than this is a click, pixels. */
+/** Pixels; a press that moves less than this is a click. */
 const CLICK_SLOP = 4;
 const LINE_PX = 40;
 const KEY_PX = 20;
 const ZOOM_NOTCH = 120;
-/** The wheel delta that changes a distance by all of it: so much finger movement zooms. */
+/** The wheel delta that corresponds to a pinch which changes the distance by its whole. */
 const PINCH_UNIT = 1000;
 const BUTTONS: readonly PointerButton[] = ["left", "middle", "right"];
 
-/** Turns what mouse, fingers and arrow keys do on the canvas into events for the tool in hand. */
+/** Converts input on the canvas by mouse, fingers and arrow keys into events for the active tool. */
 export class Controls {
   private readonly pointers = new Map<number, { x: number; y: number }>();
   private last = { x: 0, y: 0 };
@@ -26,7 +26,7 @@ export class Controls {
   ) {
     const { canvas } = stage.viewport;
     canvas.tabIndex = 0;
-    // Screen readers leave its keys to it, and read out its list of keys.
+    // With this role, screen readers pass its keys on and read out the list of keys.
     canvas.setAttribute("role", "application");
     canvas.setAttribute("aria-label", strings.scene.keys);
     canvas.addEventListener("pointerdown", (event) => this.pressed(event));
@@ -39,7 +39,7 @@ export class Controls {
     canvas.addEventListener("keydown", (event) => this.keyed(event));
   }
 
-  /** The position of the pointer over the canvas; null while it is elsewhere. */
+  /** The position of the pointer over the canvas; null while the pointer is elsewhere. */
   get place(): { x: number; y: number } | null {
     return this.isOver ? this.last : null;
   }
@@ -72,7 +72,7 @@ export class Controls {
     else this.tell(told);
   }
 
-  /** Two fingers: each moves the view half, and their distance zooms. */
+  /** Handles two fingers: each moves the view by half its motion, and a change of their distance zooms. */
   private pinched(told: ToolEvent, before: number): void {
     const { x, y, dx, dy } = told;
     const half = { dx: dx / 2, dy: dy / 2, x: x - dx, y: y - dy };
@@ -92,7 +92,7 @@ export class Controls {
     if (this.pointers.size === 0) this.tell(this.eventOf("leave", event));
   }
 
-  /** Distance between the first two fingers, pixels; 0 with fewer. */
+  /** Returns the distance between the first two fingers, pixels; 0 with fewer. */
   private spread(): number {
     const [a, b] = [...this.pointers.values()];
     return a && b ? Math.hypot(a.x - b.x, a.y - b.y) : 0;
@@ -100,7 +100,7 @@ export class Controls {
 
   private wheeled(event: WheelEvent): void {
     event.preventDefault();
-    // Browsers turn the wheel sideways while Shift is held.
+    // Browsers report a horizontal wheel while Shift is held.
     const amount = event.deltaY !== 0 ? event.deltaY : event.deltaX;
     const wheel = -amount * (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? LINE_PX : 1);
     this.tell({ ...this.eventOf("wheel", event), wheel });

@@ -2,7 +2,7 @@ import { DepthTexture, ShaderMaterial, UnsignedIntType, Vector2, Vector3, WebGLR
 import { SCREEN_VERTEX, ScreenQuad } from "./objects/screen-quad";
 import type { Viewport } from "./viewport";
 
-/** A surface must be nearer than a point by this part of its distance to hide it. */
+/** A surface hides a point if it is nearer by more than this share of the point's distance. */
 const TOLERANCE = 0.01;
 const FRAGMENT = /* glsl */ `
   uniform sampler2D depths;
@@ -13,14 +13,14 @@ const FRAGMENT = /* glsl */ `
   }
 `;
 
-/** The distance of the nearest surface at each pixel of the scene: anything behind it is hidden. */
+/** The distance of the nearest surface at each pixel of the scene; anything behind it is hidden. */
 export class DepthMap {
   private readonly pixels: Uint8Array;
   private readonly size: Vector2;
   private readonly camera: Camera;
   private readonly at = new Vector3();
 
-  /** Draws the scene once more, unseen; the camera must be aimed. Transparent objects hide nothing. */
+  /** Renders the depths of the scene off screen; the camera must be up to date. Transparent objects hide nothing. */
   constructor({ renderer, scene, camera, size }: Viewport) {
     this.camera = camera;
     this.size = new Vector2(size.width, size.height).floor();
@@ -50,12 +50,12 @@ export class DepthMap {
     packed.dispose();
   }
 
-  /** Whether nothing hides a point, in normalized device coordinates (-1 to 1, y up). */
+  /** Whether a point, in normalized device coordinates (-1 to 1, y up), is not hidden. */
   isSeen(x: number, y: number, z: number): boolean {
     const column = Math.round(((x + 1) / 2) * this.size.x - 0.5);
     const row = Math.round(((y + 1) / 2) * this.size.y - 0.5);
     const distance = this.distance(z);
-    // Points on an edge fall beside their surface as often as on it.
+    // Check the neighbours, too: points on an edge fall next to their surface as often as on it.
     for (let dy = -1; dy <= 1; dy++) {
       for (let dx = -1; dx <= 1; dx++) {
         if (this.surface(column + dx, row + dy) >= distance * (1 - TOLERANCE)) return true;
@@ -64,7 +64,7 @@ export class DepthMap {
     return false;
   }
 
-  /** The distance from the camera to the nearest surface at a pixel, m along the line of sight. */
+  /** Returns the distance from the camera to the nearest surface at a pixel, m along the viewing axis. */
   private surface(column: number, row: number): number {
     if (column < 0 || row < 0 || column >= this.size.x || row >= this.size.y) return 0;
     const first = (row * this.size.x + column) * 4;

@@ -1,7 +1,7 @@
 import { Quaternion, Vector3, type Matrix4 } from "three";
 import type { Described } from "./picking";
 
-/** The rows `Position` and `Orientation` of RViz's Selection panel. */
+/** Returns the rows `Position` and `Orientation` of RViz's Selection panel. */
 export function describedPose(pose: Matrix4): Described[] {
   const [position, orientation] = [new Vector3(), new Quaternion()];
   pose.decompose(position, orientation, new Vector3());
@@ -12,7 +12,7 @@ export function describedPose(pose: Matrix4): Described[] {
   ];
 }
 
-/** A row with a row for each number below it, and all of them in its own value. */
+/** Returns a row whose value lists all numbers, with one row for each number below it. */
 export function describedNumbers(name: string, numbers: Readonly<Record<string, number>>): Described {
   const children = Object.entries(numbers).map(([key, value]) => ({ name: key, value: String(Number(value.toPrecision(6))) }));
   return { name, value: children.map(({ value }) => value).join("; "), children };

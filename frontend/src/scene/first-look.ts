@@ -7,14 +7,14 @@ import { around, overview } from "../state/views/surroundings";
 import type { ViewValues } from "../state/views/view-controller";
 import { TOUCHED } from "./layers";
 
-/** The target of a camera that no user has placed: a world, and then the robots in it. */
+/** What the camera was placed to show without a user: a world without robots, or its robots. */
 const WORLD_SEEN = "world";
 const ROBOTS_SEEN = "robots";
-/** A camera of a world's file that sees nothing turns about a point this far ahead; no nearer one is taken. m. */
+/** The distance of the focal point, m, if the camera of a world's file looks at nothing, and its minimum. */
 const AHEAD = 5;
 const NEAREST = 0.5;
 
-/** The part of a world that the first look uses. */
+/** The part of a world that the first look needs. */
 export interface LookedAt {
   readonly hasRobots: boolean;
   extents(): { robots: Box3; world: Box3 };
@@ -24,8 +24,8 @@ export interface LookedAt {
 }
 
 /**
- * Puts a camera that no user has placed where a world's file says; else before its robots, with what is around
- * them; or, until there are some, where all of the world is seen, as when they have fallen out of it.
+ * Places a camera that no user has placed: where the world's file specifies it; else before the robots, with their
+ * surroundings; or, while there are no robots or they have fallen out of the world, where the whole world is visible.
  */
 export function lookFirst(world: LookedAt, view: ViewState, size: ViewSize): void {
   if (!view.awaitsFit(world.hasRobots ? ROBOTS_SEEN : WORLD_SEEN)) return;
@@ -40,7 +40,7 @@ export function lookFirst(world: LookedAt, view: ViewState, size: ViewSize): voi
   else view.propose(all ? overview(view.values, all, size) : {}, WORLD_SEEN, world.hasRobots);
 }
 
-/** The values of an Orbit that looks as a camera of the world's file does, except its roll. */
+/** Returns the values of an Orbit view that looks like a camera of the world's file, without its roll. */
 function throughCamera(world: LookedAt, camera: Matrix4): ViewValues {
   const eye = new Vector3().setFromMatrixPosition(camera);
   const direction = new Vector3(1, 0, 0).transformDirection(camera);
@@ -62,7 +62,7 @@ function rayFrom(eye: Vector3, direction: Vector3, far = Infinity): Raycaster {
   return ray;
 }
 
-/** A box by its corners; null for an empty one. */
+/** Returns the corners of a box; null for an empty box. */
 export function spanOf(box: Box3): Span | null {
   return box.isEmpty() ? null : { min: box.min.toArray(), max: box.max.toArray() };
 }

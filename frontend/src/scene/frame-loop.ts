@@ -1,23 +1,26 @@
 import { Signal } from "../signal";
 
-/** Frames may come this much early and still count as keeping to the rate: screens do not tick evenly. */
+/** Frames may be this much early and still count as in time, because screens do not refresh evenly. */
 const TOLERANCE_MS = 4;
-/** With nothing drawn for this long the scene counts as idle. */
+/** The scene counts as idle after this time without a frame. */
 const IDLE_AFTER_MS = 600;
-/** A frame that comes this long after it was due was held up by the ones before it: most of a tick of the screen. */
+/** A frame this late was delayed by the frames before it: most of a refresh interval of the screen. */
 const LATE_MS = 12;
-/** So many more late frames than timely ones make moving images coarser. */
+/** This many more late frames than timely ones make moving frames coarser. */
 const LATE_FRAMES = 4;
-/** So many frames at the beginning do not show the pace: they wait for programs that are compiled. */
+/** The first frames are not judged: they wait for shaders to compile. */
 const FIRST_FRAMES = 6;
-/** So many timely frames without a late one let them be finer again; twice as many the next time. */
+/** This many timely frames in a row make moving frames finer again; the number doubles each time. */
 const TIMELY_FRAMES = 300;
-/** After a coarse frame, how long nothing must move until a fine one is drawn. */
+/** After a coarse frame, a fine one is drawn once nothing has changed for this time. */
 const STILL_AFTER_MS = 250;
 
-/** The detail of a frame: with or without antialiasing, and the share of the canvas's pixels along a side. */
+/**
+ * The detail of a frame: whether it is antialiased, and its resolution as a share of the canvas's pixels along each
+ * side.
+ */
 export interface Detail {
-  /** Of a moving image that the machine draws slowly: details that no user sees may be left out. */
+  /** Whether the frame is part of a motion that the machine draws slowly, so that details may be omitted. */
   readonly moving: boolean;
   readonly smooth: boolean;
   readonly share: number;
@@ -32,28 +35,29 @@ const DETAILS: readonly Detail[] = [
 ];
 
 /**
- * Draws on demand: nothing while nothing changes, never more often than the rate. Where the machine does not keep up,
- * as software renderers, moving frames are drawn more and more coarsely, and a fine one follows when the scene is still.
+ * Draws frames on demand: none while nothing changes, and never more than `rate`. On machines that are too slow, such
+ * as those with software renderers, moving frames become coarser step by step, and a fine frame follows when the scene
+ * is still.
  *
- * Content beside the scene with a rate of its own, as images of cameras, changes with the frames: browsers put
- * the whole page together for each change, which without a GPU costs as much as the scene does.
+ * Content outside the scene with a rate of its own, such as camera images, is updated in step with frames: browsers
+ * compose the whole page for each change, which without a GPU costs as much as the scene.
  */
 export class FrameLoop {
   /** A frame was drawn. */
   readonly drawn = new Signal();
-  /** One that was due: whether the ones before it held it up. */
+  /** A due frame was judged; true if the frames before it made it late. */
   readonly judged = new Signal<boolean>();
-  /** Largest number of frames a second. */
+  /** Maximum number of frames per second. */
   rate = 30;
   private requestedAt: number | null = null;
   private readonly besides = new Set<() => void>();
   private ticks = false;
-  /** When the next frame may be drawn. */
+  /** The earliest time of the next frame. */
   private dueMs = -Infinity;
   private lateness = 0;
   private timely = 0;
   private patience = TIMELY_FRAMES;
-  /** In `DETAILS`, of moving images. */
+  /** The index in `DETAILS` for moving frames. */
   private level = 0;
   private lastIsFine = false;
   private stillTimer = 0;
@@ -62,20 +66,20 @@ export class FrameLoop {
   private count = 0;
 
   /**
-   * @param held whether nothing is drawn before `release`: to a software renderer a frame of an empty scene is as much
-   * work as one of a robot, which would be drawn later by that.
+   * @param held - whether to draw nothing before `release`. For a software renderer, a frame of an empty scene is as
+   * much work as one of a robot, and would delay it.
    */
   constructor(
     private readonly draw: (detail: Detail) => void,
     private held = false,
   ) {}
 
-  /** Nothing changed since the last frame, beside the scene neither, and that was a fine one. */
+  /** Whether nothing has changed since the last frame, in the scene or outside it, and that frame was a fine one. */
   get settled(): boolean {
     return this.requestedAt === null && this.besides.size === 0 && this.lastIsFine;
   }
 
-  /** Draws moving images coarsely from the first one on, as the renderer is known to be slow. */
+  /** Draws moving frames coarsely from the first one on, because the renderer is known to be slow. */
   expectSlow(): void {
     this.level = Math.max(this.level, 1);
   }
@@ -84,31 +88,31 @@ export class FrameLoop {
     return this.count;
   }
 
-  /** Frames drawn in the last second, or null when the scene is idle. */
+  /** Returns the number of frames in the last second; null while the scene is idle. */
   framesPerSecond(nowMs: number): number | null {
     this.recent = this.recent.filter((at) => nowMs - at < 1000);
     return nowMs - this.drawnAt > IDLE_AFTER_MS ? null : this.recent.length;
   }
 
-  /** There is something to draw. */
+  /** Starts drawing, now that there is something to draw. */
   release(): void {
     this.held = false;
     if (this.requestedAt !== null) this.askForTick();
   }
 
-  /** Draws at once what a canvas showed before its size changed, which emptied it: it would flicker until the next frame. */
+  /** Redraws immediately after the canvas was resized, which clears it: it would flicker until the next frame. */
   redraw(detail: Detail): void {
     if (!this.held) this.draw(detail);
   }
 
-  /** Something changed: a frame is due. */
+  /** Requests a frame because something changed. */
   invalidate(): void {
     if (this.requestedAt !== null) return;
     this.requestedAt = performance.now();
     this.askForTick();
   }
 
-  /** Has something shown beside the scene when the next frame is due; the scene is not drawn for it. */
+  /** Updates something outside the scene when the next frame is due; the scene is not drawn for it. */
   beside(show: () => void): void {
     this.besides.add(show);
     this.askForTick();
@@ -129,7 +133,7 @@ export class FrameLoop {
       this.askForTick();
       return;
     }
-    // One that comes late does not delay those after it, or each would cost a frame.
+    // A late frame must not delay the frames after it, or each late frame would cost one.
     this.dueMs = Math.max(due, now - interval) + interval;
     const besides = [...this.besides];
     this.besides.clear();
@@ -137,7 +141,7 @@ export class FrameLoop {
     if (this.requestedAt === null || this.held) return;
     if (this.count >= FIRST_FRAMES) this.judge(now - Math.max(this.requestedAt, due));
     this.requestedAt = null;
-    // The first frame must come soon.
+    // The first frame must appear quickly.
     const level = Math.max(this.level, this.count > 0 ? 0 : 1);
     this.paint(now, level);
     clearTimeout(this.stillTimer);

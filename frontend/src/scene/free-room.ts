@@ -3,10 +3,10 @@ import type { ViewSize } from "../state/views/camera";
 import type { Span } from "../state/views/vector";
 import { reachOf, type ScreenReach } from "./screen-reach";
 
-/** The share of the canvas's width, and of its height, that may be left out when the camera looks at all of something. */
+/** The maximum share of the canvas's width and height that may be excluded when the camera fits something into view. */
 const MOST_COVERED = 0.6;
 
-/** What of a viewport is needed. */
+/** The part of a viewport that is used here. */
 interface Seen {
   readonly size: ViewSize;
   readonly camera: Camera;
@@ -14,15 +14,15 @@ interface Seen {
   below: number;
 }
 
-/** The part of the canvas that nothing covers, and robots that go there. */
+/** The part of the canvas that nothing covers, and the moves of the view that bring robots into it. */
 export class FreeRoom {
-  /** How many pixels at the right of the canvas something covers. */
+  /** Returns the width covered at the right of the canvas, pixels. */
   covered: () => number = () => 0;
   private above = 0;
 
   /**
-   * @param robots the box around all robots.
-   * @param aim puts the camera where it belongs.
+   * @param robots - returns the bounding box of all robots.
+   * @param aim - updates the camera.
    */
   constructor(
     private readonly viewport: Seen,
@@ -31,7 +31,7 @@ export class FreeRoom {
     private readonly invalidate: () => void,
   ) {}
 
-  /** Its size; from now on its middle is where the camera looks. */
+  /** Returns the size of the free part, and moves the camera's centre to the centre of that part. */
   take(): ViewSize {
     const { width, height } = this.viewport.size;
     const [right, above] = [Math.min(this.covered(), width * MOST_COVERED), Math.min(this.above, height * MOST_COVERED)];
@@ -40,7 +40,7 @@ export class FreeRoom {
   }
 
   /**
-   * Moves the focal point to the middle of the part that nothing covers at the right, as far as robots stay on the
+   * Moves the focal point to the centre of the part that nothing covers at the right, as far as robots stay on the
    * canvas.
    */
   makeRoom(): void {
@@ -53,7 +53,10 @@ export class FreeRoom {
     if (viewport.aside !== before) this.invalidate();
   }
 
-  /** Robots whose heads something covers, so many pixels high, go down as far as their feet stay on the canvas. */
+  /**
+   * Moves robots down whose tops are covered by something of this height, pixels, as far as their feet stay on the
+   * canvas.
+   */
   makeRoomAbove(height: number): void {
     const { viewport } = this;
     const before = viewport.below;
@@ -64,7 +67,7 @@ export class FreeRoom {
     if (viewport.below !== before) this.invalidate();
   }
 
-  /** The distance from the left edge of the canvas that robots reach, pixels: 0 without one. */
+  /** The rightmost pixel column that robots cover, from the left edge of the canvas; 0 without robots. */
   get robotsReach(): number {
     return this.reach()?.right ?? 0;
   }

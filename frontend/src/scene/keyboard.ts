@@ -4,10 +4,10 @@ import type { Stage } from "./stage";
 import { TOOLS } from "./tools/catalog";
 import type { Toolbox } from "./tools/toolbox";
 
-/** A selector of the elements in which a letter is text, or chooses among entries. */
+/** Selects the elements in which a letter is text, or chooses an entry. */
 export const TAKES_LETTERS = "input:not([type=checkbox]):not([type=range]):not([type=button]), textarea, select, [contenteditable], [role=menu], [role=listbox], dialog";
 
-/** RViz's keys for tools and views: they work wherever no text is being typed. */
+/** RViz's keys for tools and views, which work wherever no text is typed. */
 export class Keyboard {
   constructor(
     private readonly session: Session,
@@ -49,7 +49,7 @@ export class Keyboard {
     }
   }
 
-  /** The default tool; when it is in hand already, nothing is selected any more. */
+  /** Activates the default tool; if it is active already, clears the selection. */
   private escape(): boolean {
     const { tools, selection } = this.session;
     if (tools.current !== tools.default) tools.choose(tools.default);
@@ -57,7 +57,7 @@ export class Keyboard {
     return true;
   }
 
-  /** Looks at the object under the pointer; where nothing is, at the whole selection, or at all objects. */
+  /** Looks at the point under the pointer; without one, fits the selection, or everything, into view. */
   private focus(): void {
     const { place } = this.controls;
     const point = place && this.stage.picker.pointAt(place.x, place.y);

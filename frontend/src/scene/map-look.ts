@@ -5,10 +5,13 @@ import { MapDrawing } from "./displays/map";
 import { spanOf } from "./first-look";
 import type { FreeRoom } from "./free-room";
 
-/** Windows for which users make no files: a scale from a file, in pixels to a metre, would cut off most of a map. */
+/** Selects the windows of phones. A scale from a file, in pixels per metre, would cut off most of a map there. */
 const SMALL = "(max-width: 900px), (max-height: 480px)";
 
-/** On a phone a camera above the maps shows all of them, until a user moves it: again when they grow or the phone is turned. */
+/**
+ * On a phone, fits all maps into a camera above them until the user moves it; repeats this when maps grow or the phone
+ * is rotated.
+ */
 export function frameMaps(enabled: Iterable<readonly [string, Drawing]>, view: ViewState, room: FreeRoom): void {
   if (!matchMedia(SMALL).matches) return;
   const maps = [...enabled].flatMap(([, drawing]) => (drawing instanceof MapDrawing ? [drawing] : []));

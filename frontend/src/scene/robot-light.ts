@@ -4,23 +4,23 @@ import type { Lighting } from "./light";
 import { StudioLight } from "./studio-light";
 import type { OwnLight } from "./surroundings";
 
-/** The part of a robot that light needs. */
+/** The part of a robot's drawing that lighting needs. */
 export interface LitRobot {
   light: Lighting;
-  /** A key of the parts that are seen. */
+  /** A key of the visible parts. */
   readonly seen: string;
   readonly visibleMeshes: readonly Mesh[];
-  /** The height of the ground under it, in the fixed frame, m. */
+  /** Returns the height of the ground below the robot, in the fixed frame, m. */
   ground(): number;
   roughBounds(): Box3;
 }
 
-/** What shines on robots, and the shadows that they cast. */
+/** The lighting of robots, and the shadows that they cast. */
 export class RobotLight {
   readonly root = new Group();
   private readonly studio = new StudioLight();
   private readonly shadow = new ContactShadow();
-  /** The robots on the ground, and the height of the ground, m. */
+  /** The key of the visible robots, and the height of the ground below them, m. */
   private standing = { what: "", height: 0 };
 
   constructor() {
@@ -30,7 +30,7 @@ export class RobotLight {
   /**
    * Places light and shadows around robots.
    *
-   * @param backdrop the colour behind a studio.
+   * @param backdrop - the background colour of a studio.
    * @returns the light in the scene, if any.
    */
   shine(lighting: Lighting, robots: readonly LitRobot[], backdrop: string): OwnLight | null {

@@ -2,7 +2,7 @@ import { Matrix4, Mesh, Raycaster, Vector2, Vector3, Vector4, type BufferAttribu
 import { TOUCHED } from "./layers";
 import type { SelectionBox } from "./picking";
 
-/** Of larger geometries only so many corners are looked at. */
+/** Of a larger geometry, only this number of vertices is tested. */
 const MOST_CORNERS = 4000;
 
 /** A rectangle on the screen, in normalized device coordinates (-1 to 1, y up). */
@@ -15,7 +15,7 @@ export class ScreenBox implements SelectionBox {
     private readonly camera: Camera,
     private readonly low: Vector2,
     private readonly high: Vector2,
-    /** Tells whether a point that is in the rectangle is seen, and not hidden. */
+    /** Returns whether a point within the rectangle is visible rather than hidden. */
     private readonly isSeen: (x: number, y: number, z: number) => boolean,
   ) {
     this.toScreen.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
@@ -48,7 +48,7 @@ export class ScreenBox implements SelectionBox {
     return false;
   }
 
-  /** A rectangle within a large face has none of its corners in it. */
+  /** Tests rays: a rectangle within a large face contains none of its vertices. */
   private meetsRay(meshes: Mesh[]): boolean {
     const ray = new Raycaster();
     ray.layers.enable(TOUCHED);

@@ -1,7 +1,7 @@
 import type { Material } from "three";
 import { SURFACE_LIGHT } from "./light";
 
-/** Has a surface shown in the soft light in place of the lights of the scene. */
+/** Gives a material the soft light instead of the lights of the scene. */
 export function soft<T extends Material>(material: T): T {
   material.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader

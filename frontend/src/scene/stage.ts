@@ -29,7 +29,7 @@ import { RobotLight } from "./robot-light";
 import { hasOwnBackground } from "./surroundings";
 import { Viewport } from "./viewport";
 
-/** A robot whose links have no places yet is waited for no longer: some never get a transform. */
+/** The stage counts as ready after this time even if no link has a pose: some robots never get a transform. */
 const WAITS_FOR_PLACES_MS = 5000;
 const UNSMOOTHED: Detail = { ...FINEST, smooth: false };
 
@@ -39,7 +39,7 @@ interface DrawnDisplay {
   pacing: Pacing;
 }
 
-/** The 3-D view: one drawing for each display, drawn when something changed. */
+/** The 3-D view, with one drawing for each display, drawn when something changed. */
 export class Stage {
   readonly viewport: Viewport;
   readonly picker: Picker;
@@ -50,15 +50,15 @@ export class Stage {
   private readonly flash: Flash;
   private readonly marks: InspectLayer;
   private readonly focalShape = new FocalShape();
-  /** What only this view shows: handles, and the point that it turns about. */
+  /** Objects that only this view shows: handles, and the mark of the focal point. */
   readonly aids = new Group();
   private interaction: Interaction = { enabled: false, hideOthers: false };
   private readonly robotLight = new RobotLight();
   private readonly backdrop = new Backdrop();
   private robotSettled = false;
-  /** The displays of which something was still being loaded in the last frame. */
+  /** The displays that were still loading something in the last frame. */
   private loading = "";
-  /** When the robot was drawn with all meshes, though nothing of it has a place. */
+  /** The time when all meshes were drawn but no link had a pose. */
   private placelessSince: number | null = null;
   /** The part of the canvas that nothing covers. */
   readonly room: FreeRoom;
@@ -86,28 +86,31 @@ export class Stage {
     this.matchDisplays();
   }
 
-  /** True once a frame with the robot or world, its meshes and its transforms was drawn, or the last do not come. */
+  /**
+   * Whether a frame with the robot or world, its meshes and its transforms was drawn, or transforms failed to arrive in
+   * time.
+   */
   get ready(): boolean {
     const since = this.placelessSince;
     return this.robotSettled || (since !== null && performance.now() - since > WAITS_FOR_PLACES_MS);
   }
 
-  /** True while the last frame shows all that there is: none is due. */
+  /** Whether the last frame shows the current state, so that none is due. */
   get settled(): boolean {
     return this.loop.settled && ![...this.drawings.values()].some(({ pacing }) => pacing.waiting);
   }
 
-  /** Visuals of all robots drawn in the last frame. */
+  /** The number of visuals of all robots drawn in the last frame. */
   get visualsDrawn(): number {
     return this.robots().reduce((sum, robot) => sum + robot.visualsDrawn, 0);
   }
 
-  /** What a display draws, for tests. */
+  /** Returns what a display draws, for tests. */
   inspect(display: string): object | null {
     return this.drawings.get(display)?.drawing.inspect?.() ?? null;
   }
 
-  /** What is drawn of the invisible, for tests. */
+  /** What is drawn of invisible properties, for tests. */
   get inspected(): object {
     return this.marks.inspect();
   }
@@ -118,7 +121,7 @@ export class Stage {
     this.loop.invalidate();
   }
 
-  /** The scene as PNG, without what is selected or shown while the camera moves. */
+  /** Returns the scene as PNG, without marks of the selection and of camera motion. */
   async screenshot(scale: number): Promise<Blob | null> {
     this.aids.visible = false;
     const screenshot = this.viewport.screenshot(scale);
@@ -127,37 +130,37 @@ export class Stage {
     return screenshot;
   }
 
-  /** Whether some display has things that the Interact tool moves. */
+  /** Whether a display has objects that the Interact tool can move. */
   get isInteractive(): boolean {
     return [...this.enabled()].some(([, drawing]) => "pointer" in drawing);
   }
 
-  /** Looks at the middle of the selection, or of all robots when nothing is selected. */
+  /** Looks at the centre of the selection, or of all selectable objects if nothing is selected. */
   focusSelected(): void {
     const middle = this.picker.middleOfSelection();
     if (middle) this.session.view.lookAt(middle);
   }
 
-  /** Looks at the whole selection, or at all drawn objects when nothing is selected, from the side that the camera is at. */
+  /** Fits the whole selection, or everything if nothing is selected, into view from the current direction. */
   fit(): void {
     const box = this.picker.boundsOfSelection() ?? this.boundsOfAll();
     if (box) this.session.view.fit(box, this.room.take());
   }
 
-  /** Looks at all of the robots, from the side that the camera is at. */
+  /** Fits all robots into view from the current direction. */
   fitRobots(): void {
     const box = this.shapeOfRobots();
     if (box) this.session.view.fit(box, this.room.take());
   }
 
-  /** Passes on to the drawings whether their markers can be moved now. */
+  /** Notifies the drawings of the state of the Interact tool. */
   setInteraction(interaction: Interaction): void {
     this.interaction = interaction;
     for (const { drawing } of this.drawings.values()) drawing.interactionChanged?.(interaction);
     this.loop.invalidate();
   }
 
-  /** The enabled displays by id. */
+  /** Returns the enabled displays by ID. */
   private *enabled(): Generator<readonly [string, Drawing]> {
     for (const [id, { display, drawing }] of this.drawings) if (display.enabled) yield [id, drawing];
   }
@@ -290,7 +293,7 @@ export class Stage {
     this.drawElsewhere();
   }
 
-  /** What lights robots; a world is lit as its display says, and robots beside it likewise. */
+  /** The lighting of robots; a robot in a world is lit as the world's display specifies. */
   private get lighting(): Lighting {
     const [world] = this.worlds();
     if (world) return world.lighting === "Soft" ? "Soft" : "Camera";
@@ -299,7 +302,10 @@ export class Stage {
     return light === "Studio" || this.viewport.affordsStudio ? "Studio" : "Soft";
   }
 
-  /** Puts the camera that no user has placed before the robot, as far as the robot is complete, or into a complete world. */
+  /**
+   * Places the camera if no user has placed it: before the visible parts of the robot, or into a world once it is
+   * complete.
+   */
   private lookFirst(settled: boolean): void {
     const { view } = this.session;
     const [robots, [world]] = [this.robots(), this.worlds()];
@@ -320,7 +326,7 @@ export class Stage {
     return [...this.enabled()].flatMap(([, drawing]) => (drawing instanceof RobotModelDrawing ? [drawing] : []));
   }
 
-  /** The simulated world, if one is shown, with the display's id. */
+  /** The simulated world, if one is shown, with the display's ID. */
   get world(): { id: string; drawing: WorldDrawing } | null {
     for (const [id, drawing] of this.enabled()) if (drawing instanceof WorldDrawing) return { id, drawing };
     return null;
@@ -334,21 +340,21 @@ export class Stage {
     return spanOf(this.robots().reduce((sum, robot) => sum.union(robot.bounds()), new Box3()));
   }
 
-  /** The box around all robots, with points of their surfaces. */
+  /** Returns the bounding box of all robots, with sample points of their surfaces. */
   private shapeOfRobots(): Span | null {
     const box = this.boundsOfRobots();
     const points = this.robots().flatMap((robot) => robot.visibleMeshes.flatMap((mesh) => pointsOn(mesh)));
     return box && points.length > 0 ? { ...box, points } : box;
   }
 
-  /** The box around robots and the world's models; where there are none, around all that can be selected. */
+  /** Returns the bounding box of robots and the world's models; of all selectable objects if there are none. */
   private boundsOfAll(): Span | null {
     const worlds = this.worlds().reduce((sum, world) => sum.union(world.extents().world), new Box3());
     const robots = this.robots().reduce((sum, robot) => sum.union(robot.bounds()), worlds);
     return spanOf(robots) ?? this.picker.boundsOfAll();
   }
 
-  /** Has the displays draw that show the scene in panels of their own. */
+  /** Draws the displays that show the scene in their own panels. */
   private drawElsewhere(): void {
     const { renderer, scene } = this.viewport;
     const view: DrawnScene = { renderer, scene, background: this.backgroundColor, showing: (accepts, draw) => this.showing(accepts, draw) };
@@ -392,7 +398,7 @@ export class Stage {
     return (drawn?.display.enabled && drawn.drawing.objectsOf?.(key)) || [];
   }
 
-  /** The box around what a display draws, in the fixed frame, m. */
+  /** Returns the bounding box of what a display draws, in the fixed frame, m. */
   boundsOf(display: string): Box3 {
     const drawn = this.drawings.get(display);
     return drawn ? new Box3().expandByObject(drawn.drawing.root) : new Box3();

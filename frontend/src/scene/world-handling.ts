@@ -7,17 +7,20 @@ import type { Stage } from "./stage";
 import { ThinLines } from "./objects/thin-lines";
 import type { ToolEvent } from "./tools/tool";
 
-/** The tools that leave the mouse to what is done to models. */
+/** The tools that leave mouse events on models to other handlers. */
 export const HANDLING_TOOLS = ["rviz_default_plugins/Interact", "rviz_default_plugins/MoveCamera"];
-/** Of one page, at most so often. */
+/** ms; the minimum time between two requests of a page. */
 const PERIOD_MS = 50;
-/** Newtons for each metre between the point of a link that is pulled and the mouse. */
+/** The force in N per m between the pulled point of a link and the mouse. */
 const STIFFNESS = 50;
 const PULL_COLOR = "#ff2f6d";
-/** Drawn after all else, to be seen through it. */
+/** Drawn last, to be visible through everything. */
 const LAST = 1000;
 
-/** What is held: a point of a link in the link's frame, where it was in the fixed frame, and the plane it is dragged in. */
+/**
+ * The drag in progress: a point of a link in the link's frame, its position at the start in the fixed frame, and the
+ * plane of the drag.
+ */
 interface Hold {
   readonly drawing: WorldDrawing;
   readonly link: string;
@@ -27,19 +30,19 @@ interface Hold {
   readonly pushes: boolean;
   lastMs: number;
   offset: Vector3;
-  /** Where the mouse is, in the fixed frame, of a pull. */
+  /** The position of the mouse in the fixed frame during a pull. */
   readonly target: Vector3;
-  /** Repeats the force while the mouse stands still; 0 for none. */
+  /** The timer that repeats the force while the mouse rests; 0 for none. */
   timer: number;
 }
 
 /**
- * Handles the mouse on models of a simulated world: Ctrl moves one along the ground, Ctrl and Shift pull it by a force,
- * and a click with the right button opens its menu.
+ * Handles the mouse on models of a simulated world: Ctrl moves a model along the ground, Ctrl and Shift pull it with a
+ * force, and a right click opens its menu.
  */
 export class WorldHandling {
   private hold: Hold | null = null;
-  /** From the point that is pulled to the mouse. */
+  /** The line from the pulled point to the mouse. */
   private readonly line = new ThinLines();
 
   constructor(
@@ -53,7 +56,7 @@ export class WorldHandling {
     session.simulation.freePlace = () => stage.world?.drawing.freePlace() ?? [0, 0, 0];
   }
 
-  /** False for an event that the tool in hand should have. */
+  /** Handles an event; returns false if it is left to the active tool. */
   pointer(event: ToolEvent): boolean {
     if (this.hold) {
       if (event.type === "move" && event.left) this.move(this.hold, event);
@@ -97,7 +100,7 @@ export class WorldHandling {
     this.send(hold);
   }
 
-  /** Pulls the point that is held towards the mouse, wherever both are by now. */
+  /** Pulls the grabbed point towards the mouse from their current positions. */
   private pullOn(): void {
     const { hold } = this;
     const matrix = hold?.drawing.poseOf(hold.link);
@@ -142,7 +145,7 @@ export class WorldHandling {
     sceneMenu.emit({ x: event.x, y: event.y, choices });
   }
 
-  /** The link of a world under the pointer. */
+  /** Returns the link of a world under the pointer. */
   private find(event: ToolEvent): { drawing: WorldDrawing; link: string; at: Vector3; matrix: Matrix4 | null } | null {
     const found = this.stage.picker.at(event.x, event.y);
     if (!(found?.drawing instanceof WorldDrawing)) return null;

@@ -16,16 +16,16 @@ import type { PropertyRows } from "../state/properties";
 import { standsInScene, type Lighting } from "./light";
 import { aimSun, castShadows, FULL, shade, STUDIO_DIRECTION, STUDIO_KEY, studioSky } from "./studio-light";
 
-/** Shadows are drawn this far around the middle of the drawn objects at most, m. */
+/** The maximum radius around the centre of the drawn objects in which shadows are drawn, m. */
 const LARGEST_RADIUS = 25;
-/** Metres between a lamp and what it lights, as a rule. */
+/** The assumed distance between a lamp and the objects that it lights, m. */
 const SEEN_FROM = 3;
-/** So many lights have shadows; each is another image of the scene. */
+/** The maximum number of lights with shadows, each of which needs another rendering of the scene. */
 const MOST_SHADOWS = 2;
-/** So many lights of a world are lit: each costs every pixel. */
+/** The maximum number of lights of a world, each of which costs time for every pixel. */
 const MOST_LIGHTS = 8;
 
-/** The lights of one world, at their places in the fixed frame. */
+/** The lights of a world, at their poses in the fixed frame. */
 export class WorldLights {
   readonly root = new Group();
   private placed: { light: Light; said: LightScene }[] = [];
@@ -37,7 +37,7 @@ export class WorldLights {
     this.root.matrixAutoUpdate = false;
   }
 
-  /** Takes what the display's properties and its world say. */
+  /** Applies the properties of the display and its world. */
   style(rows: PropertyRows, scene: WorldScene): void {
     const said = rows.text("Automatic", "Light");
     this.chosen = said === "Studio" || said === "World" || said === "Camera" ? said : this.affordsStudio() ? "Studio" : "Soft";
@@ -50,7 +50,7 @@ export class WorldLights {
     else if (this.chosen === "World") this.buildWorld(scene);
   }
 
-  /** Whether the light at the camera is not needed. */
+  /** Whether lights in the scene replace the camera's light. */
   get isLit(): boolean {
     return standsInScene(this.chosen);
   }
@@ -63,18 +63,18 @@ export class WorldLights {
     return this.shadowed;
   }
 
-  /** Whether its own lights are lit. */
+  /** Whether the world's own lights are used. */
   get isOfWorld(): boolean {
     return this.chosen === "World";
   }
 
-  /** The colour behind the world. */
+  /** Returns the background colour of the world. */
   background(scene: WorldScene): string {
     const [r = 0, g = 0, b = 0] = scene.background;
     return `#${new Color(r, g, b).getHexString()}`;
   }
 
-  /** Puts the lights where their links are, and the shadows around what is drawn. */
+  /** Moves the lights to the poses of their links, and fits shadows to the drawn objects. */
   place(world: Matrix4, poseOf: (link: string) => Matrix4 | null, drawn: () => Box3): void {
     if (!this.isLit) return;
     for (const { light, said } of this.placed) {
@@ -88,12 +88,12 @@ export class WorldLights {
     }
   }
 
-  /** Makes surfaces cast and receive shadows, or not. */
+  /** Sets whether objects cast and receive shadows. */
   shade(root: Object3D): void {
     shade(root, this.shadowed);
   }
 
-  /** What is lit, for tests. */
+  /** Returns the lights in use, for tests. */
   tell(): object {
     const shadows = this.placed.filter(({ light }) => light.castShadow).length;
     return { lighting: this.chosen, lights: this.placed.length, shadows };
@@ -146,7 +146,7 @@ export class WorldLights {
     this.placed.push({ light, said });
   }
 
-  /** A sun shines from just outside of the drawn objects, so that its shadows are as fine as they can be. */
+  /** Aims a sun from just outside the drawn objects, so that its shadows have the highest resolution. */
   private aim(light: DirectionalLight, direction: Vector3, drawn: () => Box3): void {
     const box = light.castShadow ? drawn() : new Box3();
     if (box.isEmpty()) {
@@ -159,7 +159,7 @@ export class WorldLights {
   }
 }
 
-/** The intensity of a light at the distance at which it is seen most; nearer and farther it is the same up to its range. */
+/** Returns the intensity of a light at a typical distance, which is used for all distances up to its range. */
 function strength({ kind, range, fading }: LightScene): number {
   if (kind === "directional") return 1;
   const [constant = 1, linear = 0, quadratic = 0] = fading;
