@@ -4,7 +4,7 @@ import { button, h } from "../dom";
 import { strings } from "../strings";
 import { Logo } from "../widgets/logo";
 
-/** Shown over everything while the page has no token that the program knows: where to find it, and a field for it. */
+/** The screen over everything while the page has no valid token: where to find the token, and a field for it. */
 export class Door {
   readonly element: HTMLElement;
   private readonly field = h("input", { class: "field wide", aria: { label: strings.door.label } });
@@ -50,7 +50,7 @@ export class Door {
       this.wasOpen = true;
       this.show(false);
     }
-    // A page that was connected once keeps showing its content, with a notice.
+    // A page that was connected before keeps showing its content, with a notice.
     if (state !== "refused" || this.wasOpen) return;
     if (this.tokens.current !== null) this.problem.textContent = strings.door.unknown;
     this.show(true);

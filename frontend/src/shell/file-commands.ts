@@ -5,15 +5,15 @@ import { Dialog, tell } from "../widgets/dialog";
 import { saveText } from "../widgets/save-file";
 import { FileDialog } from "./file-dialog";
 
-/** Bytes of a file that fits into a message to the server, quotes and all. */
+/** The maximum size of a file in bytes, so that it fits into a message to the server with its quotes escaped. */
 const LARGEST = 800_000;
 const CONTENT_TYPE = "application/yaml";
 
-/** The commands on the configuration file, with the questions that keep work from being lost. */
+/** The commands on the configuration file, with questions before changes are lost. */
 export class FileCommands {
-  /** The pending request, repeated when the user accepts that changes are lost. */
+  /** The pending request, repeated if the user agrees to lose changes. */
   private pending: ((discard: boolean) => void) | null = null;
-  /** Runs when the file is saved. */
+  /** Called once the file is saved. */
   private afterSaving: (() => void) | null = null;
   private dialog: FileDialog | null = null;
 
@@ -26,7 +26,7 @@ export class FileCommands {
     });
     state.texts.on(({ name, text }) => saveText(name, text, CONTENT_TYPE));
     window.addEventListener("beforeunload", (event) => {
-      // The shared configuration lives on in the program; one of this page's own ends with it.
+      // The shared configuration survives in the program; a page's own configuration ends with the page.
       if (state.current.own && state.current.unsaved) event.preventDefault();
     });
   }
@@ -39,12 +39,12 @@ export class FileCommands {
     this.ask((discard) => this.state.open(path, discard));
   }
 
-  /** Lets the user choose a file of the server. */
+  /** Lets the user choose a file on the server. */
   chooseFile(): void {
     this.show(new FileDialog(this.state, "open", (path) => this.open(path)));
   }
 
-  /** Lets the user choose a file of the browser's machine. */
+  /** Lets the user choose a file on the browser's machine. */
   chooseLocal(): void {
     const input = document.createElement("input");
     input.type = "file";
@@ -169,7 +169,7 @@ export class FileCommands {
   }
 }
 
-/** An edit in words: `adding Grid`. */
+/** Returns an edit in words: `adding Grid`. */
 export function editText(edit: EditName): string {
   return strings.shell.edits[edit.kind](edit.name);
 }

@@ -7,7 +7,7 @@ import { Dialog } from "../widgets/dialog";
 
 const ENDING = ".rviz";
 
-/** Chooses a configuration file of the server: its folders and `.rviz` files, and a line to type a path in. */
+/** Chooses a configuration file on the server from folders and `.rviz` files, or by typing a path. */
 export class FileDialog {
   private readonly dialog: Dialog;
   private readonly list = h("ul", { class: "file-list", role: "listbox", aria: { label: strings.shell.folder } });
@@ -64,7 +64,7 @@ export class FileDialog {
     this.dialog.close();
   }
 
-  /** Shows why a folder cannot be listed; whether the dialog is open. */
+  /** Shows why a folder cannot be listed; returns whether the dialog is open. */
   refused(message: string): boolean {
     if (!this.dialog.element.open) return false;
     this.problem.textContent = message;

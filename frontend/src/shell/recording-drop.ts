@@ -8,7 +8,10 @@ import { language, strings } from "../strings";
 import { Dialog, tell } from "../widgets/dialog";
 import { filesOf, recordingAmong, type Dropped } from "./recording-files";
 
-/** Recordings that the user drops on the page, chooses or has made: they go to the server, and a page with their timeline opens. */
+/**
+ * Opens recordings that the user drops on the page, chooses or has made: uploads them, and opens the page of the
+ * recording.
+ */
 export class RecordingDrop {
   private readonly veil = h("div", { class: "drop-veil" }, h("p", {}, strings.recording.dropHere));
   private sending = false;
@@ -37,7 +40,7 @@ export class RecordingDrop {
     session.connection.on("timeline", ({ live }) => this.check(live));
   }
 
-  /** Lets the user choose a recording of the browser's machine: its file, or all files of its folder. */
+  /** Lets the user choose a recording on the browser's machine: its file, or all files of its folder. */
   choose(): void {
     const input = document.createElement("input");
     input.type = "file";
@@ -62,7 +65,10 @@ export class RecordingDrop {
     return this.open(name, whole, (upload) => upload.send(name, files));
   }
 
-  /** Opens the page of a recording when the server shows it; until then a dialog shows the progress. `whole` are bytes. */
+  /**
+   * Opens the page of a recording once the server shows it, with a dialog for the progress until then. `whole` is the
+   * size in bytes.
+   */
   private async open(name: string, whole: number, bring: (upload: Upload) => Promise<string | null>): Promise<void> {
     const words = strings.recording;
     if (this.sending) return;
@@ -97,7 +103,7 @@ export class RecordingDrop {
     }
   }
 
-  /** A recording that was not viewed for a while is no longer shown: the program's own page is. */
+  /** Returns to the live page, because the server closes recordings that no page has viewed for a while. */
   private check(live: boolean): void {
     if (!live || recordingIn(location.href) === null) return;
     history.replaceState(history.state, "", addressOf(location.href, null));

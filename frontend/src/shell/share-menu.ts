@@ -11,9 +11,9 @@ import { saveBlob, saveFrom } from "../widgets/save-file";
 
 const SCALES = [1, 2, 4] as const;
 
-/** The menu of exports: images and videos of the scene, the robot as a file. */
+/** The menu of exports: images and videos of the scene, and the robot as a file. */
 export class ShareMenu {
-  /** Shown while a video is recorded: its time, and a click ends it. */
+  /** The button shown while a video is recorded: its duration, and a click to stop. */
   readonly element: HTMLElement;
   private readonly video: VideoRecorder | null;
   private readonly stop: HTMLButtonElement;
@@ -93,7 +93,7 @@ export class ShareMenu {
     this.stop.setAttribute("aria-label", label);
   }
 
-  /** Named after the robot and the time. */
+  /** Returns a name from the robot and the current time. */
   private fileName(ending: string): string {
     const name = (this.session.robot?.name ?? "scene").replace(/[^\p{L}\p{N}._-]+/gu, "_");
     const time = new Date().toISOString().slice(0, 19).replace(/[T:]/g, "-");

@@ -5,7 +5,7 @@ import { strings } from "../strings";
 
 const REFRESH_MS = 500;
 
-/** Connection, fixed frame, robot and drawing rate, at the foot of the page. */
+/** Connection, fixed frame, robot and frame rate, in the foot of the page. */
 export class StatusBar {
   readonly element: HTMLElement;
   private readonly connection = h("span", { class: "connection", role: "status" });

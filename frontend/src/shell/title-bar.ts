@@ -12,7 +12,7 @@ import { addressFor } from "./own-displays";
 import type { RecordingDrop } from "./recording-drop";
 import type { ShareMenu } from "./share-menu";
 
-/** The head of the page: menus, the configuration file, and the commands for all of the page. */
+/** The head of the page: menus, the configuration file, and commands for the whole page. */
 export class TitleBar {
   readonly element: HTMLElement;
   private readonly title = h("span", { class: "document-title" });
@@ -162,7 +162,7 @@ function menuButton(label: string, entries: () => MenuEntry[]): HTMLButtonElemen
   return element;
 }
 
-/** Left and right go from menu to menu, down opens one. */
+/** Moves between menus with left and right, and opens one with down. */
 function walkWithArrows(menus: readonly HTMLButtonElement[]): void {
   for (const [index, menu] of menus.entries()) {
     menu.addEventListener("keydown", (event) => {
@@ -179,7 +179,7 @@ function shortened(path: string): string {
   return path.length <= 60 ? path : `…${path.slice(-58)}`;
 }
 
-/** The button that shows the theme, with a menu to choose one. */
+/** Returns the button that shows the theme, with a menu to choose one. */
 function themeButton(theme: ThemeState): HTMLButtonElement {
   const words = strings.shell;
   const choose = (): void => {
