@@ -2,32 +2,32 @@ import type { Connection } from "../../connection/connection";
 import type { LogLine } from "../../protocol";
 import { Signal } from "../../signal";
 
-/** Records that are kept; the oldest go, a tenth at a time. */
+/** The maximum number of records; beyond it, the oldest tenth is dropped. */
 export const MOST_LINES = 20_000;
 const SAVED_KEY = "linkwright.log-levels";
 
 export const LEVELS = [10, 20, 30, 40, 50] as const;
 export type Level = (typeof LEVELS)[number];
 
-/** The level whose colour and name a record has: rcl_interfaces/msg/Log knows numbers in between too. */
+/** Returns the level whose colour and name a record has: rcl_interfaces/msg/Log permits values in between. */
 export function levelOf(line: Pick<LogLine, "level">): Level {
   return LEVELS.findLast((level) => line.level >= level) ?? 10;
 }
 
-/** A record as it is copied: as on the console. */
+/** Returns a record as text for copying, in the format of the console. */
 export function lineText(line: LogLine, levelName: string): string {
   const place = line.file === "" ? "" : ` (${line.file}:${line.line})`;
   return `[${levelName}] [${line.time.toFixed(9)}] [${line.node}]: ${line.message}${place}`;
 }
 
-/** The records of /rosout that the page has seen, and those of them that pass the filters. */
+/** The records of /rosout that the page has received, and those that pass the filters. */
 export class LogState {
   /** Records or filters changed. */
   readonly changed = new Signal();
   lines: LogLine[] = [];
   /** The records that pass the filters. */
   shown: LogLine[] = [];
-  /** Records that the server could not send in time. */
+  /** The number of records that the server could not send in time. */
   missed = 0;
   readonly levels: Set<number>;
   paused = false;
@@ -35,7 +35,10 @@ export class LogState {
   private text = "";
   private waiting: LogLine[] = [];
   private opened = false;
-  /** The next records are the first of a connection: the server begins with the past, and the page may have some of it. */
+  /**
+   * Whether the next records are the first of a connection: the server starts with past records, some of which the page
+   * may have.
+   */
   private begins = true;
 
   constructor(
@@ -55,7 +58,7 @@ export class LogState {
     });
   }
 
-  /** The nodes that have written, sorted. */
+  /** The nodes that have written records, sorted. */
   get nodes(): string[] {
     return [...new Set(this.lines.map((line) => line.node))].sort();
   }
@@ -83,7 +86,7 @@ export class LogState {
     this.filter();
   }
 
-  /** Records that arrive during a pause are shown when it ends. */
+  /** Pauses or resumes; records that arrive during a pause are shown on resuming. */
   setPaused(paused: boolean): void {
     this.paused = paused;
     const { waiting } = this;

@@ -2,12 +2,12 @@ import type { Connection } from "../../connection/connection";
 import type { GoalOutcome, NavigationCommand, NavigationState as Told } from "../../protocol";
 import { Signal } from "../../signal";
 
-/** The state of nav2; requested only while the panel is visible. */
+/** The state of nav2, which is requested only while the panel is visible. */
 export class NavigationState {
   readonly changed = new Signal();
   /** A goal failed, or another was accepted. */
   readonly outcomeChanged = new Signal<GoalOutcome>();
-  /** Null before the server reports it. */
+  /** The last state; null until the server has reported one. */
   told: Told | null = null;
   private opened = false;
 

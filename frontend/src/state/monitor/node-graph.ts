@@ -2,7 +2,7 @@ import type { Connection } from "../../connection/connection";
 import type { NodeGraph } from "../../protocol";
 import { Signal } from "../../signal";
 
-/** The nodes and topics of the graph while a view shows them. */
+/** The nodes and topics of the graph, up to date while a view shows them. */
 export class NodeGraphState {
   readonly changed = new Signal();
   graph: NodeGraph = { type: "node_graph", nodes: [], topics: [] };

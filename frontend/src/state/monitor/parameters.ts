@@ -2,7 +2,7 @@ import type { Connection } from "../../connection/connection";
 import type { NodeParameters, ParameterDump, ParameterKind, ParameterResult } from "../../protocol";
 import { Signal } from "../../signal";
 
-/** The nodes that have parameters, and the parameters of the one that is chosen. */
+/** The nodes with parameters, and the parameters of the chosen node. */
 export class ParametersState {
   readonly nodesChanged = new Signal();
   readonly changed = new Signal();
@@ -10,7 +10,7 @@ export class ParametersState {
   readonly dumpCame = new Signal<ParameterDump>();
   nodes: readonly string[] = [];
   node: string | null = null;
-  /** Null until the node has answered. */
+  /** The parameters of the chosen node; null until the node has answered. */
   parameters: NodeParameters | null = null;
   private listed = false;
 

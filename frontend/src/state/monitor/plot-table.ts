@@ -1,14 +1,14 @@
 import type { SeriesBuffer, TimeSource } from "./series-buffer";
 
-/** Times, and for each series a value for each of them: undefined where it has none, null where the line breaks. */
+/** Times, and a column of values for each series: undefined for no value, null where the line breaks. */
 export type PlotTable = [number[], ...(number | null | undefined)[][]];
 
 /**
- * The samples of some series between two times, as uPlot draws them.
+ * Returns the samples of several series between two times, in uPlot's format.
  *
- * Where there are more samples than the plot has columns of pixels, each column shows the least and the greatest value
- * in it: the plot looks the same, and takes as long for a thousand samples a second as for ten. One sample beyond each
- * side is taken along, so that lines reach the edges.
+ * Where there are more samples than columns of pixels, each column shows its minimum and maximum: the plot looks the
+ * same, and a thousand samples a second take no longer than ten. One sample beyond each side is included so that lines
+ * reach the edges.
  */
 export function plotTable(
   series: readonly SeriesBuffer[],
@@ -23,13 +23,16 @@ export function plotTable(
   });
   const total = spans.reduce((sum, [start, end]) => sum + end - start, 0);
   if (total <= 2 * columns) return exact(series, source, spans);
-  // Columns stay where they are while the window moves, or the line would flicker. Differences of points in time are not
-  // exact, hence the rounding.
+  // Columns must not shift while the window moves, or the line would flicker. The width is rounded, because differences
+  // of times are not exact.
   const width = Number(((to - from) / columns).toPrecision(5));
   return condensed(series, source, spans, Math.floor(from / width) * width, width, columns + 1);
 }
 
-/** The samples of some series between two times as CSV: a row for each time, blanks where a series has no value. */
+/**
+ * Returns the samples of several series between two times as CSV: one row for each time, empty cells for series without
+ * a value.
+ */
 export function csvText(
   names: readonly string[],
   series: readonly SeriesBuffer[],
@@ -78,7 +81,7 @@ function condensed(
   width: number,
   count: number,
 ): PlotTable {
-  // Two rows a column, and a column at each side for the samples beyond.
+  // Two rows for each column, and one more column on each side for the samples beyond.
   const times = Array.from({ length: 2 * (count + 2) }, (_, row) => from + ((row >> 1) - 1 + (row % 2 ? 0.75 : 0.25)) * width);
   const columns = series.map((buffer, index) => {
     const column = new Array<number | null | undefined>(times.length);

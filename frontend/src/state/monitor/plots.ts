@@ -5,15 +5,15 @@ import { Signal } from "../../signal";
 import { fieldText, type FieldName } from "./field-text";
 import { SeriesBuffer, type TimeSource } from "./series-buffer";
 
-/** One line of a plot. */
+/** A line of a plot. */
 export interface Series extends FieldName {
   readonly id: number;
   readonly buffer: SeriesBuffer;
-  /** Why there are no values; null when there are, or when they are waited for. */
+  /** Why there are no values; null if there are, or if they are pending. */
   error: string | null;
 }
 
-/** One diagram; a fixed range of values, or null for the range of the shown samples. */
+/** A plot; `range` is a fixed range of values, or null to fit the samples shown. */
 export interface Plot {
   readonly id: number;
   readonly series: Series[];
@@ -29,7 +29,7 @@ interface Saved {
 const SAVED_KEY = "linkwright.plots.1";
 const FIRST_SECONDS = 30;
 
-/** The plots and their samples. The server sends samples while the panel is open, and only those. */
+/** The plots and their samples, which the server sends only while the panel is open. */
 export class PlotsState {
   /** Plots, series, errors or settings changed. */
   readonly changed = new Signal();
@@ -37,7 +37,7 @@ export class PlotsState {
   readonly moved = new Signal();
   readonly fieldsTold = new Signal<TopicFields>();
   readonly plots: Plot[] = [];
-  /** Length of the window, seconds. */
+  /** The length of the window, s. */
   seconds = FIRST_SECONDS;
   source: TimeSource = "received";
   private heldAt: readonly [number, number] | null = null;
@@ -62,7 +62,7 @@ export class PlotsState {
     });
     connection.on("topic_fields", (fields) => this.fieldsTold.emit(fields));
     connection.on("playhead", ({ live }) => (this.present = live));
-    // The plotted samples are from another time than the one shown now.
+    // The samples are from another time than the one shown now.
     connection.on("time_reset", () => {
       if (!this.present) this.clear();
     });
@@ -77,7 +77,7 @@ export class PlotsState {
     return this.heldAt !== null;
   }
 
-  /** The time span of the plots, seconds; null while there is nothing to show. */
+  /** The time span of the plots, s; null if there is nothing to show. */
   get window(): readonly [number, number] | null {
     if (this.heldAt) return this.heldAt;
     const times = this.series.map((each) => each.buffer.latest(this.source)).filter((time) => time !== null);
@@ -86,7 +86,7 @@ export class PlotsState {
     return [to - this.seconds, to];
   }
 
-  /** The panel was opened or closed. */
+  /** Starts or stops receiving samples, when the panel is opened or closed. */
   setOpen(open: boolean): void {
     this.opened = open;
     this.announce();
@@ -132,14 +132,14 @@ export class PlotsState {
     this.edited();
   }
 
-  /** Freezes the plot; further samples are still received. */
+  /** Freezes or resumes the plots; samples are received in both cases. */
   setPaused(paused: boolean): void {
     this.heldAt = paused ? this.window : null;
     this.changed.emit();
     this.moved.emit();
   }
 
-  /** Freezes the plot at a part of it. */
+  /** Freezes the plots at a time span. */
   hold(from: number, to: number): void {
     this.heldAt = [from, to];
     this.changed.emit();
@@ -153,7 +153,7 @@ export class PlotsState {
     this.moved.emit();
   }
 
-  /** Requests the fields of a topic that can be plotted; null when the answer is no longer needed. */
+  /** Requests the fields of a topic that can be plotted; null cancels the request. */
   askFields(topic: string | null): void {
     this.connection.send({ type: "ask_fields", topic });
   }
@@ -197,7 +197,7 @@ export class PlotsState {
       this.seconds = saved.seconds;
       this.source = saved.source;
     } catch {
-      // Plots of another version of the page: start with none.
+      // The stored plots are from another version of the page: start without any.
       this.plots.length = 0;
     }
   }

@@ -7,16 +7,16 @@ export interface TeleopSettings {
   topic: string;
   kind: TwistKind;
   frameId: string;
-  /** Greatest speed along each axis, m/s. */
+  /** The maximum linear velocity along each axis, m/s. */
   linear: number;
-  /** Greatest speed of turning, rad/s. */
+  /** The maximum angular velocity, rad/s. */
   angular: number;
-  /** Velocities a second while one is held, 10 to 20. */
+  /** The number of velocity messages per second while driving, 10 to 20. */
   rate: number;
   gamepad: boolean;
 }
 
-/** A source of motion: keys and the pad add up, a gamepad is alone. */
+/** A source of motion; the motions of all sources are added. */
 export type Source = "keys" | "pad" | "gamepad";
 
 const SAVED_KEY = "linkwright.teleop.1";
@@ -30,12 +30,12 @@ const FIRST: TeleopSettings = {
   gamepad: false,
 };
 
-/** Sends velocities while a motion is held, and zero once it is not. */
+/** Sends velocities while a motion is held, and zero when it ends. */
 export class TeleopState {
-  /** Settings, the aim or the motion changed. */
+  /** Settings, the target or the motion changed. */
   readonly changed = new Signal();
   settings: TeleopSettings;
-  /** The settings that the server applied; null before it reports them. */
+  /** The target that the server uses; null until it has reported one. */
   aim: Aim | null = null;
   private readonly motions = new Map<Source, Motion>();
   private opened = false;
@@ -58,7 +58,7 @@ export class TeleopState {
     });
   }
 
-  /** The sum of the inputs that are held now. */
+  /** The sum of the motions of all sources. */
   get motion(): Motion {
     return together(this.motions.values());
   }
@@ -83,7 +83,7 @@ export class TeleopState {
     this.changed.emit();
   }
 
-  /** Holds the motion of a source from now on. */
+  /** Sets the motion of a source from now on. */
   move(source: Source, motion: Motion): void {
     const before = this.motion;
     if (isStill(motion)) this.motions.delete(source);
@@ -95,7 +95,7 @@ export class TeleopState {
     this.changed.emit();
   }
 
-  /** Lets go of everything. */
+  /** Ends all motions. */
   stop(): void {
     const driven = this.timer !== 0;
     clearTimeout(this.timer);
@@ -106,7 +106,7 @@ export class TeleopState {
     this.changed.emit();
   }
 
-  /** Sends the held motion, and again after the period. */
+  /** Sends the current motion, and repeats that at the rate. */
   private drive(): void {
     this.send(this.motion);
     this.timer = window.setTimeout(() => this.drive(), 1000 / this.settings.rate);

@@ -2,13 +2,13 @@ import type { Connection } from "../../connection/connection";
 import type { TopicMessage, TopicRow, TopicTraffic } from "../../protocol";
 import { Signal } from "../../signal";
 
-/** The topics, and the details of those that a view watches. */
+/** The topics, and details of those that a view watches. */
 export class TopicsState {
   readonly listChanged = new Signal();
   readonly figuresChanged = new Signal();
   readonly messageCame = new Signal<TopicMessage>();
   topics: readonly TopicRow[] = [];
-  /** Whether the topics arrived since the page was connected. */
+  /** Whether the topics have arrived since the page connected. */
   known = false;
   readonly traffic = new Map<string, TopicTraffic>();
   readonly messages = new Map<string, TopicMessage>();
@@ -37,7 +37,7 @@ export class TopicsState {
     });
   }
 
-  /** Starts or stops keeping the list of topics current for a reader. */
+  /** Starts or stops keeping the list of topics up to date for a reader. */
   list(reader: object, wanted: boolean): void {
     const before = this.readers.size;
     if (wanted) this.readers.add(reader);
