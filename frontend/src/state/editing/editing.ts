@@ -4,36 +4,39 @@ import { Signal } from "../../signal";
 import type { TextStorage } from "../../storage";
 import { Snapping } from "../modelling/snapping";
 
-/** The requested pose of the edited part: metres, or the components of an axis; rad, empty for an axis. */
+/**
+ * The requested values of the edited part: position in m or components of an axis, and angles in rad, empty for an
+ * axis.
+ */
 export interface Draft {
   readonly xyz: readonly number[];
   readonly rpy: readonly number[];
 }
 
 export type HandleMode = "translate" | "rotate";
-/** The frame whose axes the handles have. */
+/** The frame along whose axes the handles are oriented. */
 export type HandleFrame = "parent" | "own";
 
 const SNAPPING = "linkwright.editing-snapping";
-/** After the last change, ms. */
+/** The preview is requested this time after the last change, ms. */
 const ASKS_AFTER = 120;
 const NOTHING = 1e-9;
 
-/** Editing of a robot: the editable parts, the requested changes, and the changes that result in the files. */
+/** Editing of a robot: the editable parts, the requested values, and the resulting changes of the files. */
 export class EditingState {
-  /** A change of the editable parts, the selection, the preview, the undo stack, or the refusal. */
+  /** The editable parts, the selection, the preview, the undo stack or the refusal changed. */
   readonly changed = new Signal();
-  /** The place of the draft of the chosen part. */
+  /** The draft of the chosen part changed. */
   readonly draftChanged = new Signal();
-  /** Whether editing is active. */
+  /** Editing started or ended. */
   readonly activeChanged = new Signal();
-  /** The user requested to edit a link. */
+  /** The user asked to edit a link. */
   readonly wanted = new Signal();
   readonly snapping: Snapping;
   preview: EditPreview | null = null;
-  /** Why nothing was written. */
+  /** Why nothing was written; null after success. */
   refusal: DiagnosticItem | null = null;
-  /** The files that were written last. */
+  /** The files written last. */
   written: readonly string[] = [];
   canUndo = false;
   canRedo = false;
@@ -41,7 +44,7 @@ export class EditingState {
   private known: EditableParts | null = null;
   private part: EditablePart | null = null;
   private asked: Draft | null = null;
-  /** The draft was written, and the robot with it is not received yet. */
+  /** Whether the draft was written, but the resulting robot has not arrived yet. */
   private isWritten = false;
   private number = 0;
   private together = false;
@@ -90,7 +93,7 @@ export class EditingState {
     return this.known?.parts ?? [];
   }
 
-  /** Why nothing can be edited; empty where it can. */
+  /** Why nothing can be edited; empty if editing is possible. */
   get whyNot(): string {
     return this.known?.why_not ?? "";
   }
@@ -103,17 +106,17 @@ export class EditingState {
     return this.part;
   }
 
-  /** Null where nothing was moved. */
+  /** The draft; null if nothing was moved. */
   get draft(): Draft | null {
     return this.asked;
   }
 
-  /** Whether the draft still has to be written, or thrown away. */
+  /** Whether the draft is neither written nor discarded. */
   get isOpen(): boolean {
     return this.asked !== null && !this.isWritten;
   }
 
-  /** Whether all that one text makes may change. */
+  /** Whether the edit may change all elements that result from the same text. */
   get isTogether(): boolean {
     return this.together;
   }
@@ -138,7 +141,7 @@ export class EditingState {
     this.draftChanged.emit();
   }
 
-  /** Edits until the returned function is called. */
+  /** Activates editing until the returned function is called. */
   hold(): () => void {
     this.holders += 1;
     this.activeChanged.emit();
@@ -153,7 +156,7 @@ export class EditingState {
     };
   }
 
-  /** The link that the user looks at; null for none. */
+  /** Edits the parts of the link that the user selected; null for none. */
   follow(link: { display: string; link: string } | null): void {
     if (link?.display === this.link?.display && link?.link === this.link?.link) return;
     this.link = link;
@@ -170,7 +173,7 @@ export class EditingState {
     this.reset();
   }
 
-  /** Sets the requested pose of the chosen part; the preview is requested when the pointer rests. */
+  /** Sets the requested values of the chosen part; the preview is requested once the pointer rests. */
   move(draft: Draft): void {
     const { part } = this;
     if (!part || this.whyNot !== "") return;
@@ -183,7 +186,7 @@ export class EditingState {
     if (this.asked) this.timer = setTimeout(() => this.askPreview(), ASKS_AFTER);
   }
 
-  /** Asks for the same once more, where all that the text makes may change. */
+  /** Requests the same edit for all elements that result from the same text. */
   changeAll(): void {
     this.together = true;
     this.askPreview();
@@ -205,7 +208,7 @@ export class EditingState {
     this.connection.send({ type: "redo_edit" });
   }
 
-  /** Throws the draft away. */
+  /** Discards the draft. */
   reset(): void {
     this.asked = null;
     this.isWritten = this.together = false;
@@ -236,7 +239,10 @@ export class EditingState {
     this.connection.send({ type: "preview_edit", number, display: link.display, part: part.part, name, index, xyz, rpy, together });
   }
 
-  /** A draft stays if its starting pose is unchanged: then another part of the robot has changed. */
+  /**
+   * Handles new parts. The draft stays if the part's own values are unchanged, which means that another part of the
+   * robot has changed.
+   */
   private take(message: EditableParts): void {
     if (message.display !== this.link?.display || message.link !== this.link.link) return;
     this.known = message;

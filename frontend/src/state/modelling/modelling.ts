@@ -8,13 +8,13 @@ import { Snapping } from "./snapping";
 /** The mode of the gizmo. */
 export type GizmoMode = "translate" | "rotate" | "scale";
 
-/** The object that a click in the scene adds; `address` is that of a model. */
+/** The entity that the next click in the scene adds; `address` is that of a model. */
 export interface Placing {
   readonly kind: NewKind;
   readonly address: string;
 }
 
-/** Something to put where it is dropped: pixels from the window's upper left corner; null for the middle of the scene. */
+/** An entity dropped onto the scene: pixels from the window's upper left corner; null for the centre of the scene. */
 export interface Drop {
   readonly placing: Placing;
   readonly at: { readonly x: number; readonly y: number } | null;
@@ -29,19 +29,19 @@ const NOTHING: Omit<ModellingState, "type"> = {
   can_redo: false,
   entities: [],
 };
-/** The least distance between a copy and its original, m. */
+/** The minimum distance between a copy and its original, m. */
 const LEAST_OFFSET = 0.5;
 
-/** Modelling the world: the state of its file from the server, and this page's selection and placement. */
+/** Modelling of the world: the state of its file from the server, and this page's selection and tool. */
 export class Modelling {
-  /** The world, or whether it can be edited, has changed. */
+  /** The world, or whether it can be edited, changed. */
   readonly changed = new Signal();
   readonly selectionChanged = new Signal();
-  /** The gizmo does something else, or something else is put into the world. */
+  /** The mode of the gizmo, or the entity being placed, changed. */
   readonly toolChanged = new Signal();
-  /** The models that may be added are known. */
+  /** The models that can be added have arrived. */
   readonly offered = new Signal<readonly ModelChoice[]>();
-  /** Something was dropped onto the scene; see `takeDrop`. */
+  /** An entity was dropped onto the scene; see `takeDrop`. */
   readonly dropped = new Signal();
   readonly snapping: Snapping;
   private world = NOTHING;
@@ -50,7 +50,7 @@ export class Modelling {
   private inHand: Placing | null = null;
   private falling: Drop | null = null;
   private clipboard: readonly string[] = [];
-  /** This page added objects: the new ones of the next state are selected. */
+  /** Whether this page added entities, so that the new ones of the next state are to be selected. */
   private makes = false;
 
   constructor(
@@ -72,7 +72,7 @@ export class Modelling {
     return this.world.active;
   }
 
-  /** Null for a world that was never saved. */
+  /** The file of the world; null if it was never saved. */
   get file(): string | null {
     return this.world.file;
   }
@@ -93,7 +93,7 @@ export class Modelling {
     return this.world.entities;
   }
 
-  /** Names, in the order of selecting. */
+  /** The names of the selected entities, in the order of selection. */
   get selected(): readonly string[] {
     return this.names;
   }
@@ -135,26 +135,26 @@ export class Modelling {
     return this.world.entities.find((entity) => entity.name === name) ?? null;
   }
 
-  /** `toggle` adds unselected objects, and removes selected ones. */
+  /** Selects entities; `toggle` adds unselected ones and removes selected ones. */
   select(names: readonly string[], mode: "replace" | "toggle" = "replace"): void {
     const others = this.names.filter((name) => !names.includes(name));
     const added = names.filter((name) => !this.names.includes(name));
     this.choose(mode === "replace" ? names : [...others, ...added]);
   }
 
-  /** Takes something in hand that the next click puts into the world; null for nothing. */
+  /** Chooses the entity that the next click in the scene adds; null for none. */
   place(placing: Placing | null): void {
     this.inHand = placing;
     this.toolChanged.emit();
   }
 
-  /** The user drops something onto the scene. */
+  /** Drops an entity onto the scene. */
   drop(drop: Drop): void {
     this.falling = drop;
     this.dropped.emit();
   }
 
-  /** The last drop, returned only once: the scene may have arrived later. */
+  /** Returns the last drop once; the scene may load only after the drop. */
   takeDrop(): Drop | null {
     const drop = this.falling;
     this.falling = null;
@@ -170,7 +170,7 @@ export class Modelling {
     this.connection.send({ type: "add_entity", shape: kind, address, pose: [...pose], size: [...size] });
   }
 
-  /** All of them are one step of undo. */
+  /** Applies changes as one step of undo. */
   change(changes: readonly Change[]): void {
     if (changes.length === 0) return;
     if (changes.some(({ new_name }) => typeof new_name === "string")) this.makes = true;
@@ -216,7 +216,7 @@ export class Modelling {
     if (this.canRedo) this.connection.send({ type: "redo_world" });
   }
 
-  /** Saves it into its file, or to `path`. */
+  /** Saves the world to its file, or to `path`. */
   save(path: string | null): void {
     this.connection.send({ type: "save_world", path });
   }

@@ -4,23 +4,23 @@ import type { TextStorage } from "../../storage";
 const KEY = "linkwright.snapping";
 const DEGREE = Math.PI / 180;
 
-/** Grids to choose from, m and degrees. */
+/** The steps to choose from, m and degrees. */
 export const LENGTH_STEPS = [0.01, 0.05, 0.1, 0.25, 0.5, 1] as const;
 export const ANGLE_STEPS = [1, 5, 15, 30, 45, 90] as const;
 
-/** The nearest multiple of a step, without the dust of binary fractions. */
+/** Rounds to the nearest multiple of a step, without floating-point noise. */
 export function snapped(value: number, step: number): number {
   return step > 0 ? Number((Math.round(value / step) * step).toPrecision(12)) : value;
 }
 
-/** The grid, if any, for moving, turning and scaling objects; remembered by the browser. */
+/** The grid for moving, rotating and scaling, stored by the browser. */
 export class Snapping {
   readonly changed = new Signal();
   private on: boolean;
   private length: number;
   private angle = 15;
 
-  /** `key`: the key that it is remembered under; `usual`: the default. */
+  /** `key` is the storage key, `usual` the default. */
   constructor(
     private readonly storage: TextStorage,
     private readonly key = KEY,
@@ -60,7 +60,7 @@ export class Snapping {
     this.keep();
   }
 
-  /** The current steps, m and rad; 0 without a grid. `inverted` while Ctrl is held. */
+  /** Returns the current steps, m and rad, 0 without a grid; `inverted` while Ctrl is held. */
   steps(inverted: boolean): { length: number; angle: number } {
     const on = this.on !== inverted;
     return { length: on ? this.length : 0, angle: on ? this.angle * DEGREE : 0 };

@@ -22,10 +22,10 @@ const START: Vector = [5, 5, 10];
 const METRES_PER_PIXEL = 0.01;
 const METRES_PER_PIXEL_AHEAD = 0.1;
 const METRES_PER_WHEEL_UNIT = 0.01;
-/** The share of the line of sight along z above which it has no yaw: then the up direction defines it. */
+/** A direction whose z component exceeds this counts as vertical: its yaw is defined by the up direction. */
 const VERTICAL = 0.99999;
 
-/** RViz's FPS: a camera that flies; yaw turns it about z, pitch tips it down. */
+/** RViz's FPS: a flying camera; yaw rotates it about z, pitch tilts it down. */
 export class FpsController implements ViewController {
   readonly followsYaw = false;
   readonly focalColor = 0xffff00;
@@ -100,7 +100,7 @@ export class FpsController implements ViewController {
   }
 }
 
-/** Yaw and pitch of a line of sight; `up` defines the yaw of a vertical one. */
+/** Returns yaw and pitch of a direction; `up` defines the yaw of a vertical one. */
 function looking(ahead: Vector, up: Vector): ViewValues {
   const far = length(ahead);
   if (far === 0) return {};

@@ -22,14 +22,14 @@ const START = { distance: 10, angle: 0.785398 };
 const SMALLEST_DISTANCE = 0.001;
 const ZOOM_PER_PIXEL = 0.1;
 const ZOOM_PER_WHEEL_UNIT = 0.001;
-/** The height at which RViz puts an Orbit that replaces TopDownOrtho, m. */
+/** The height at which RViz places an Orbit view that replaces TopDownOrtho, m. */
 const ABOVE_MAP = 100;
-/** So little beside the vertical that the view keeps its side up. */
+/** A small horizontal offset from the vertical, which defines the yaw of the view. */
 const ASIDE = 0.0001;
 
 /**
- * RViz's Orbit: position = focal + distance (cos yaw cos pitch, sin yaw cos pitch, sin pitch), looking at the focal point.
- * Constants and signs are those of rviz_default_plugins' OrbitViewController.
+ * RViz's Orbit: position = focal + distance (cos yaw cos pitch, sin yaw cos pitch, sin pitch), looking at the focal
+ * point. Constants and signs are those of OrbitViewController in rviz_default_plugins.
  */
 export class OrbitController implements ViewController {
   readonly followsYaw: boolean = false;
@@ -108,7 +108,7 @@ export class OrbitController implements ViewController {
     return shift ? "orbitShift" : "orbit";
   }
 
-  /** The focal point follows the pointer in the camera's plane. */
+  /** Moves the focal point with the pointer in the camera's plane. */
   protected pan(values: ViewValues, { dx, dy, height, left, middle }: Drag): ViewValues {
     if (!left && !middle) return {};
     const { distance, focal } = orbitOf(values);
@@ -132,7 +132,7 @@ export function orbitOf(values: ViewValues): { distance: number; yaw: number; pi
   };
 }
 
-/** The values of a camera that looks from one point at another. */
+/** Returns the values of a camera that looks from one point at another. */
 export function aroundFrom(focal: Vector, viewpoint: Vector): ViewValues {
   const distance = clampDistance(distanceBetween(focal, viewpoint));
   const [x, y, z] = scale(add(viewpoint, focal, -1), 1 / distance);
@@ -144,7 +144,7 @@ export function aroundFrom(focal: Vector, viewpoint: Vector): ViewValues {
   };
 }
 
-/** The values that look straight down at where a TopDownOrtho was. */
+/** Returns the values that look straight down at the position of a TopDownOrtho view. */
 export function aboveMap([x, y]: Vector): ViewValues {
   return aroundFrom([x, y, 0], [x, y - ASIDE, ABOVE_MAP]);
 }
@@ -153,7 +153,7 @@ function clampDistance(distance: number): number {
   return Math.max(SMALLEST_DISTANCE, distance);
 }
 
-/** The unit vector from the focal point to the camera. */
+/** Returns the unit vector from the focal point to the camera. */
 export function direction(yaw: number, pitch: number): Vector {
   return [Math.cos(yaw) * Math.cos(pitch), Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];
 }

@@ -3,36 +3,36 @@ import { direction, OrbitController } from "./orbit";
 import { number, wrapYaw, type ViewValues } from "./view-controller";
 import type { ViewSize } from "./camera";
 
-/** Room around a robot in a world: so many times its size, and at least so many metres. */
+/** The margin around a robot in a world: a factor of its size, and its minimum in m. */
 const ROOM = 0.75;
-/** From where a robot is seen, and a world without robots, rad above the horizon. */
+/** The pitch from which a robot, and a world without robots, is viewed, rad above the horizon. */
 const ROBOT_PITCH = 0.5;
 const OVERVIEW_PITCH = 0.785398;
-/** The viewpoints to try if an object hides the robot, or much around it: higher up, from other sides, nearer. */
+/** The changes of pitch, yaw and distance to try if objects hide the robot or its surroundings. */
 const PITCHES = [0, 0.3, 0.6, 0.9];
 const SIDES = [0, -Math.PI / 2, Math.PI / 2, Math.PI];
 const NEARER = [1, 0.6, 0.35];
-/** So much of the surroundings must be seen more for a step higher up, or to another side. */
+/** The share of the surroundings that must become visible to justify a step up, or to another side. */
 const HIGHER = 0.15;
 const ASIDE = 0.05;
-/** Places around a robot. */
+/** The number of places around a robot whose visibility counts. */
 const PLACES = 8;
-/** The directions that are tried, and the most that each can score. */
+/** The directions to try, with the maximum score of each. */
 const DIRECTIONS = PITCHES.flatMap((pitch, higher) =>
   SIDES.map((side, aside) => ({ pitch, side, most: 1 - higher * HIGHER - aside * ASIDE })),
 );
 const orbit = new OrbitController();
 
-/** Whether nothing hides a place from a viewpoint. */
+/** Returns whether nothing hides a place from a viewpoint. */
 export type IsSeen = (viewpoint: Vector, place: Vector) => boolean;
 
-/** The values of an Orbit that shows all of a world from above. */
+/** Returns the values of an Orbit view of a whole world from above. */
 export function overview(values: ViewValues, world: Span, size: ViewSize): ViewValues {
   const from = { ...values, Pitch: OVERVIEW_PITCH };
   return { Pitch: OVERVIEW_PITCH, ...orbit.fit(from, world, size) };
 }
 
-/** The values of an Orbit that shows a robot and its surroundings, from where most of both is visible. */
+/** Returns the values of an Orbit view of a robot and its surroundings, from where most of both is visible. */
 export function around(values: ViewValues, { min, max }: Span, size: ViewSize, isSeen: IsSeen): ViewValues {
   const span = Math.max(...subtract(max, min));
   const room = Math.max(ROOM, ROOM * span);

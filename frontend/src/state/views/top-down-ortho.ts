@@ -21,7 +21,7 @@ const HEIGHT = 500;
 const ZOOM_PER_PIXEL = 0.01;
 const ZOOM_PER_WHEEL_UNIT = 0.001;
 
-/** RViz's TopDownOrtho: straight down, without perspective; x is to the right at angle 0. */
+/** RViz's TopDownOrtho: an orthographic view straight down; x points right at angle 0. */
 export class TopDownOrthoController implements ViewController {
   readonly followsYaw = false;
   readonly focalColor = 0xffff00;
@@ -29,7 +29,7 @@ export class TopDownOrthoController implements ViewController {
   camera(values: ViewValues): Camera {
     const scale = scaleOf(values);
     const angle = number(values, "Angle", 0);
-    // A negative scale, which a fast drag in RViz leads to, mirrors the view in both directions.
+    // A negative scale, which RViz allows by a fast drag, mirrors the view in both directions.
     const side = Math.sign(scale);
     return {
       position: [number(values, "X", 0), number(values, "Y", 0), HEIGHT],
@@ -105,7 +105,7 @@ function scaleOf(values: ViewValues): number {
   return clampScale(number(values, "Scale", START_SCALE));
 }
 
-/** Keeps away from zero, on the side where it is. */
+/** Keeps the scale away from zero, without changing its sign. */
 function clampScale(scale: number): number {
   return scale < 0 ? Math.min(-SMALLEST_SCALE, scale) : Math.max(SMALLEST_SCALE, scale);
 }

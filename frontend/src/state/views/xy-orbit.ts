@@ -4,12 +4,14 @@ import { add, distanceBetween, length, scale, subtract, type Span, type Vector }
 import { aboveMap, aroundFrom, OrbitController, orbitOf, type OrbitMotion } from "./orbit";
 import { vectorValues, type Drag, type Look, type MouseHint, type ViewValues } from "./view-controller";
 
-/** Part of the distance by which the camera is raised, so that the focal point is in the lower half of the view. */
+/**
+ * The share of the distance by which the camera is raised, which places the focal point in the lower half of the view.
+ */
 const RAISE = 0.2;
-/** Near the horizon a pixel is many metres; the focal point goes no further in one step. */
+/** m; near the horizon a pixel covers many metres, so the motion of the focal point per step is limited. */
 const LONGEST_STEP = 1;
 
-/** RViz's XYOrbit: an Orbit whose focal point moves on the ground, z = 0 of its target. */
+/** RViz's XYOrbit: an Orbit view whose focal point moves on the ground, z = 0 of its target. */
 export class XYOrbitController extends OrbitController {
   override readonly focalColor: number = 0x00ffff;
 
@@ -26,7 +28,9 @@ export class XYOrbitController extends OrbitController {
     return aroundFrom([x, y, 0], this.camera(values).position);
   }
 
-  /** The focal point stays on the ground, where the line of sight of the camera that sees all of the box meets it. */
+  /**
+   * Keeps the focal point on the ground, where the line of sight of a camera that shows the whole box intersects it.
+   */
   override fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
     const camera = this.camera(values);
     const { middle, distance, clip } = framing(camera, values, box, size);
@@ -34,7 +38,7 @@ export class XYOrbitController extends OrbitController {
     return { ...this.mimic({ cls: "", values, camera: { ...camera, position } }), ...clip };
   }
 
-  /** Keeps the view if the camera is above the ground and sees some of it; otherwise starts over, as RViz does. */
+  /** Keeps the camera if it is above the ground and looks at it; otherwise starts from the default, as RViz does. */
   override mimic({ cls, camera }: Look): ViewValues {
     if (cls === "rviz_default_plugins/TopDownOrtho") return aboveMap(camera.position);
     const ahead = onGround({ origin: camera.position, direction: scale(camera.back, -1) });
@@ -56,7 +60,7 @@ export class XYOrbitController extends OrbitController {
     return shift ? "groundShift" : "orbit";
   }
 
-  /** The ground follows the pointer. */
+  /** Moves the ground with the pointer. */
   protected override pan(values: ViewValues, drag: Drag): ViewValues {
     if (!drag.left && !drag.middle) return {};
     const camera = this.camera(values);
@@ -70,7 +74,7 @@ export class XYOrbitController extends OrbitController {
   }
 }
 
-/** RViz's ThirdPersonFollower: an XYOrbit that moves and turns with its target, but does not tilt with it. */
+/** RViz's ThirdPersonFollower: an XYOrbit view that moves and rotates with its target, but does not tilt with it. */
 export class ThirdPersonFollowerController extends XYOrbitController {
   override readonly followsYaw = true;
 }

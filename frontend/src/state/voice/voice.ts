@@ -5,10 +5,13 @@ import type { TextStorage } from "../../storage";
 import { Microphone } from "./microphone";
 import { Speaker } from "./speaker";
 
-/** How long the microphone stays open after the button was released: opening it takes a moment, in which a word is lost. */
+/** ms for which the microphone stays open after the button was released: while it opens, a word may be lost. */
 const WARM_MS = 60_000;
 const MOST_KEPT = 100;
-/** Seconds that may be missing in a word. Of synthetic words all were recognised after enrolling with 0.03, half with 0.1. */
+/**
+ * The maximum seconds missing in a word. Of synthetic words enrolled with 0.03 s missing, all were recognised; with 0.1
+ * s, half.
+ */
 const MOST_LOST = 0.03;
 const HEADER_BYTES = 16;
 
@@ -18,7 +21,10 @@ export interface Said {
   text: string;
 }
 
-/** A binary frame with a block of sound, and the seconds lost in it; `viewer/protocol/voice.py` has its form. */
+/**
+ * Returns a binary frame with a block of sound and the seconds lost in it; `viewer/protocol/voice.py` defines its
+ * format.
+ */
 export function soundFrame(samples: Int16Array, lostSeconds = 0): ArrayBuffer {
   const frame = new ArrayBuffer(HEADER_BYTES + 2 * samples.length);
   const view = new DataView(frame);
@@ -29,30 +35,30 @@ export function soundFrame(samples: Int16Array, lostSeconds = 0): ArrayBuffer {
   return frame;
 }
 
-/** Talking to the robot: the button, the microphone, and the conversation. */
+/** The state for talking to the robot: the button, the microphone and the conversation. */
 export class VoiceState {
   readonly changed = new Signal();
-  /** A line was spoken, or the text being recognized changed. */
+  /** A line was added to the conversation, or the partial text changed. */
   readonly conversed = new Signal();
-  /** The spoken lines, oldest first. */
+  /** The lines of the conversation, oldest first. */
   readonly history: Said[] = [];
-  /** The text that is being recognized. */
+  /** The text recognised so far of the current utterance. */
   partial = "";
   /** The server's state; null while it is not requested. */
   told: Told | null = null;
   readonly speaker: Speaker;
   private readonly watching = new Set<object>();
   private pressed = false;
-  /** The button is released, and the speech until then is on its way. */
+  /** Whether the button was released, but the last sound is not sent yet. */
   private ending = false;
   private listening = false;
   private taking = false;
   private mode: TalkMode = "off";
   private timer = 0;
-  /** Seconds that the microphone had lost before the current speech. */
+  /** The seconds that the microphone had lost before the current utterance. */
   private lostBefore = 0;
   private isAnswered = false;
-  /** Seconds that it had lost until the last block. */
+  /** The seconds that it had lost up to the last block. */
   private lostUntil = 0;
 
   constructor(
@@ -96,7 +102,7 @@ export class VoiceState {
     return this.pressed;
   }
 
-  /** Whether all is listened to. */
+  /** Whether the page listens all the time. */
   get open(): boolean {
     return this.listening;
   }
@@ -105,17 +111,17 @@ export class VoiceState {
     return this.watching.size > 0;
   }
 
-  /** Whether too much sound was lost in the current or last speech, with the button or for a recording. */
+  /** Whether too much sound was lost in the current or last utterance or recording. */
   get hasGaps(): boolean {
     return !this.listening && this.microphone.lostSeconds - this.lostBefore > MOST_LOST;
   }
 
-  /** Whether the robot has answered since the button was pressed last: then it asks for a repetition itself. */
+  /** Whether the robot has answered since the button was last pressed; in that case it asks for a repetition itself. */
   get answered(): boolean {
     return this.isAnswered;
   }
 
-  /** Starts or stops listening to the conversation for `who`. */
+  /** Starts or stops receiving the conversation for `who`. */
   watch(who: object, wanted: boolean): void {
     const before = this.watched;
     if (wanted) this.watching.add(who);
@@ -125,7 +131,7 @@ export class VoiceState {
     this.connection.send({ type: "watch_voice", watched: this.watched });
   }
 
-  /** The button is pressed: speech from now on is a command. */
+  /** Handles a press of the button: speech from now on is a command. */
   press(): void {
     if (this.pressed) return;
     this.pressed = true;
@@ -136,7 +142,7 @@ export class VoiceState {
     this.use();
   }
 
-  /** The button is let go. */
+  /** Handles the release of the button. */
   release(): void {
     if (!this.pressed) return;
     this.pressed = false;
@@ -149,7 +155,7 @@ export class VoiceState {
     });
   }
 
-  /** Listens to all, or only while the button is held. */
+  /** Listens all the time, or only while the button is held. */
   setOpen(open: boolean): void {
     if (open === this.listening) return;
     this.listening = open;
@@ -162,18 +168,21 @@ export class VoiceState {
     this.changed.emit();
   }
 
-  /** Releases the microphone, for example when the page is hidden. */
+  /** Releases the button and the microphone, for example when the page is hidden. */
   letGo(): void {
     this.release();
     if (!this.listening) this.microphone.close();
   }
 
-  /** Whether the current speech is a recording of a word, not a command. */
+  /** Whether the current speech is a recording of a word rather than a command. */
   get recording(): boolean {
     return this.taking;
   }
 
-  /** Has the microphone opened for a recording; `begun` is called before the first sound is sent, false gives it up. */
+  /**
+   * Opens the microphone for a recording; `begun` is called before the first sound is sent, and cancels the recording
+   * by returning false.
+   */
   async record(begun: () => boolean): Promise<boolean> {
     this.speaker.hush();
     this.setOpen(false);
@@ -186,7 +195,7 @@ export class VoiceState {
     return this.taking;
   }
 
-  /** Ends the recording; its last sound is sent when this resolves. */
+  /** Ends the recording; resolves once its last sound is sent. */
   async endRecord(): Promise<void> {
     await this.microphone.flush();
     this.taking = false;
@@ -203,7 +212,7 @@ export class VoiceState {
     this.conversed.emit();
   }
 
-  /** For `window.linkwright`. */
+  /** Returns the state for `window.linkwright`. */
   inspect(): object {
     const { history, partial, told, microphone, mode, recording } = this;
     const { problem, isOpen, peak } = microphone;
@@ -219,7 +228,7 @@ export class VoiceState {
     this.changed.emit();
   }
 
-  /** Closes the microphone after a while, if it is not needed. */
+  /** Closes the microphone after a while, unless it is needed. */
   private rest(): void {
     clearTimeout(this.timer);
     if (this.pressed || this.listening || this.taking || !this.microphone.isOpen) return;

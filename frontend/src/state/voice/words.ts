@@ -3,28 +3,28 @@ import type { EnrolledWord, TakeJudged } from "../../protocol";
 import { Signal } from "../../signal";
 import type { VoiceState } from "./voice";
 
-/** How long a recording continues after the button was released: the end of a word is soft. */
+/** ms for which a recording continues after the button was released, because the end of a word is soft. */
 const TAIL_MS = 300;
 
 /** The words that the user enrols. */
 export class WordsState {
   readonly changed = new Signal();
-  /** The text of the file arrived. */
+  /** The text of the words file arrived. */
   readonly fileCame = new Signal<string>();
-  /** The user requested to record the words at their present place. */
+  /** The user asked to enrol the words at their current place. */
   readonly enrolWanted = new Signal();
   words: readonly EnrolledWord[] = [];
-  /** The number of recordings for each word. */
+  /** The number of recordings needed for each word. */
   enough = 3;
   file = "";
   problem: string | null = null;
   /** The result of the last recording of each word. */
   readonly judged = new Map<string, TakeJudged>();
-  /** The word that is being recorded. */
+  /** The word being recorded. */
   recording: string | null = null;
-  /** How often each word was recorded since the user began to enrol at their present place; null while they do not. */
+  /** The number of recordings of each word at the user's current place; null while the user does not enrol there. */
   here: Map<string, number> | null = null;
-  /** Words that have a name but no recording yet. */
+  /** Words that were added but have no recording yet. */
   private readonly named = new Set<string>();
   private watched = false;
 
@@ -53,12 +53,12 @@ export class WordsState {
     return [...this.words, ...[...this.named].map((name) => ({ name, takes: 0 }))];
   }
 
-  /** The words that are still to be recorded at the user's present place. */
+  /** The words still to be recorded at the user's current place. */
   get missingHere(): readonly EnrolledWord[] {
     return this.all.filter(({ name }) => (this.here?.get(name) ?? 0) < this.enough);
   }
 
-  /** Begins or ends the recording of words at the user's present place. */
+  /** Starts or ends enrolment at the user's current place. */
   enrolHere(begun: boolean): void {
     this.here = begun ? new Map<string, number>() : null;
     this.changed.emit();
@@ -78,7 +78,7 @@ export class WordsState {
     this.changed.emit();
   }
 
-  /** Begins the recording of a word. */
+  /** Starts the recording of a word. */
   async begin(name: string): Promise<void> {
     if (this.recording !== null) return;
     this.recording = name;
@@ -126,7 +126,7 @@ export class WordsState {
     this.connection.send({ type: "ask_words_file" });
   }
 
-  /** Whether the word can be recorded now: its button is held and the microphone is open. */
+  /** Whether the word can be spoken now: its button is held and the microphone is open. */
   get isHearing(): boolean {
     return this.recording !== null && this.voice.recording;
   }
