@@ -5,7 +5,10 @@ import type { ElementName } from "./description-model";
 
 export type MarkName = "added" | "changed" | "removed" | "old";
 
-/** Distinguishable with red-green or blue-yellow colour blindness; `comparison.test.ts` computes how well. */
+/**
+ * Colours that can be told apart with red-green or blue-yellow colour blindness; `comparison.test.ts` computes how
+ * well.
+ */
 export const MARK_COLORS: Readonly<Record<MarkName, string>> = {
   added: "#56b4e9",
   changed: "#f0c020",
@@ -13,17 +16,17 @@ export const MARK_COLORS: Readonly<Record<MarkName, string>> = {
   old: "#c4ccd6",
 };
 
-/** The look of a link in place of its description's. */
+/** Replaces the colours of a link's description. */
 export interface Instead {
-  /** r g b, from 0 to 1 */
+  /** r g b, 0 to 1. */
   readonly color: readonly [number, number, number];
-  /** Objects in the same place are drawn over it. */
+  /** Whether objects in the same place are drawn over the link. */
   readonly behind?: boolean;
-  /** It is seen through less than the rest of the robot. */
+  /** Whether the link is less transparent than the rest of the robot. */
   readonly firm?: boolean;
 }
 
-/** Two descriptions in one scene: how they differ, and how their links are drawn. */
+/** The comparison of two descriptions in one scene: their differences, and how their links are drawn. */
 export class ComparisonState {
   readonly changed = new Signal();
   private descriptions: ComparedDescriptions | null = null;
@@ -34,12 +37,12 @@ export class ComparisonState {
     connection.on("compared_descriptions", (message) => this.take(message));
   }
 
-  /** Null where one description is shown. */
+  /** The compared descriptions; null if only one is shown. */
   get compared(): ComparedDescriptions | null {
     return this.descriptions;
   }
 
-  /** Whether links that differ are coloured by their difference. */
+  /** Whether links are coloured by their differences. */
   get marks(): boolean {
     return this.marking;
   }
@@ -49,7 +52,7 @@ export class ComparisonState {
     this.changed.emit();
   }
 
-  /** The look of a link in a display; null for that of its description. */
+  /** Returns the look that replaces that of a link's description in a display; null to keep it. */
   instead(display: string, link: string): Instead | null {
     const { descriptions } = this;
     if (!descriptions || display === "") return null;
@@ -66,14 +69,14 @@ export class ComparisonState {
   }
 
   /**
-   * The link of the new robot that is drawn in place of one of a display, where both are in one place; undefined for
-   * one that has other shapes, or of another display than that of the old robot.
+   * Returns the link of the new robot that looks the same as a link of the old one, and is drawn instead if both have
+   * the same pose; undefined if there is none, or if the display is not that of the old robot.
    */
   twinOf(display: string, link: string): string | undefined {
     return this.isOld(display) ? this.descriptions?.shapes[link] : undefined;
   }
 
-  /** The link or joint that shows a difference; null for one that nothing shows. */
+  /** Returns the link or joint that shows a difference; null if none does. */
   elementOf(item: ComparedItem): ElementName | null {
     const display = item.in_old ? this.descriptions?.old.display : this.descriptions?.new.display;
     return display && item.element !== "" ? { display, kind: item.element_kind, name: item.element } : null;
@@ -86,10 +89,10 @@ export class ComparisonState {
   }
 }
 
-/** The differences of one object, shown together. */
+/** The differences of one object, which are shown together. */
 export interface DifferenceGroup {
   readonly items: readonly ComparedItem[];
-  /** The change of the whole object. */
+  /** The kind of change of the whole object. */
   readonly kind: ComparedItem["kind"];
 }
 
@@ -104,7 +107,7 @@ export function grouped(items: readonly ComparedItem[]): DifferenceGroup[] {
   return groups.map((each) => ({ items: each, kind: each.length === 1 ? (each[0]?.kind ?? "changed") : "changed" }));
 }
 
-/** The marks among the links, in the order of a legend. */
+/** Returns the marks among the links, in the order of the legend. */
 export function marksIn(robots: readonly ComparedRobot[]): MarkName[] {
   const found = new Set<MarkName>(robots.flatMap(({ marks }) => Object.values(marks)));
   return [...(["added", "changed", "removed"] as const).filter((mark) => found.has(mark)), "old"];

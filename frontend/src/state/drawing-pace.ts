@@ -1,16 +1,16 @@
 import { Signal } from "../signal";
 
-/** The number of recent frames that count. */
+/** The number of recent frames that are judged. */
 const FRAMES = 60;
-/** So many late ones of them are slow, and so few are not any more. */
+/** Drawing is slow from this number of late frames on, and fast again from this number down. */
 const SLOW = 45;
 const FAST = 15;
 
-/** Whether the page draws as fast as requested. Rare frames do not count as slow, only frames that were due. */
+/** Whether the page draws as fast as requested. Only frames that were due count; a low frame rate alone is not slow. */
 export class DrawingPace {
   /** Drawing became slow, or fast again. */
   readonly changed = new Signal();
-  /** The software renderer, if the processor draws instead of a graphics card. */
+  /** The name of the software renderer; null if a GPU draws. */
   software: string | null = null;
   private readonly lates: boolean[] = [];
   private slow = false;
@@ -19,7 +19,7 @@ export class DrawingPace {
     return this.slow;
   }
 
-  /** A frame was drawn; `late`: long after it was due, for the ones before it took their time. */
+  /** Counts a frame; `late` if it was drawn long after it was due, because the frames before took too long. */
   frame(late: boolean): void {
     this.lates.push(late);
     if (this.lates.length > FRAMES) this.lates.shift();

@@ -5,8 +5,8 @@ import type { Kept } from "./kept";
 import type { SelectionState } from "./selection";
 
 /**
- * The link or joint that the panels of the description are about. A joint selects the link that it moves in the scene;
- * a link selected there is the element here.
+ * The link or joint that the description panels show. Selecting a joint selects its child link in the scene; selecting
+ * a link in the scene makes it the element here.
  */
 export class ElementFocus {
   readonly changed = new Signal();
@@ -24,7 +24,7 @@ export class ElementFocus {
     });
   }
 
-  /** Has the joint that is selected outlive the page. */
+  /** Preserves the selected joint across reloads of the page. */
   keep(kept: Kept): void {
     kept.part("joint", () => this.joint, (joint) => (this.joint = joint));
   }
@@ -46,7 +46,7 @@ export class ElementFocus {
     const link = element && this.robots.get(element.display)?.links.find((each) => each.name === name);
     const before = this.selection.selected;
     this.selection.select(element && link ? { display: element.display, link } : null);
-    // The same link by another of its joints, or by itself.
+    // The link is the same, but the selected element may be another of its joints, or the link itself.
     if (before?.link.name === this.selection.selected?.link.name) this.changed.emit();
   }
 
@@ -56,7 +56,7 @@ export class ElementFocus {
     this.hoverChanged.emit();
   }
 
-  /** The link that shows an element in the scene. */
+  /** Returns the link that represents an element in the scene. */
   linkOf(element: ElementName): string | undefined {
     if (element.kind === "link") return element.name;
     const links = this.robots.get(element.display)?.links ?? [];

@@ -19,13 +19,13 @@ export const COLUMNS = [
 
 export type Column = (typeof COLUMNS)[number];
 
-/** The texts of the cells. */
+/** The texts for the cells. */
 interface Words {
   readonly kinds: Readonly<Record<JointDetails["kind"], string>>;
   readonly table: { readonly damping: (value: string) => string; readonly friction: (value: string) => string };
 }
 
-/** The texts of a joint's row. */
+/** Returns the texts of a joint's row. */
 export function cells(joint: JointDetails, angles: AngleUnits, words: Words): Record<Column, string> {
   const scale = angles.scale(joint.kind);
   const unit = joint.kind === "prismatic" ? "m" : angles.current;
@@ -57,14 +57,14 @@ export function cells(joint: JointDetails, angles: AngleUnits, words: Words): Re
   };
 }
 
-/** `2 × elbow + 0.1 rad` */
+/** Returns `2 × elbow + 0.1 rad`. */
 export function mimicText(joint: string, multiplier: number, offset: number, unit: string): string {
   const product = multiplier === 1 ? joint : multiplier === -1 ? `−${joint}` : `${rounded(multiplier)} × ${joint}`;
   if (offset === 0) return product;
   return `${product} ${offset < 0 ? "−" : "+"} ${rounded(Math.abs(offset))} ${unit}`;
 }
 
-/** Joints sorted by a column; numbers by their value, joints without one last. */
+/** Returns joints sorted by a column: numbers by their value, joints without one last. */
 export function sorted(joints: readonly JointDetails[], column: Column, descending: boolean): JointDetails[] {
   const way = descending ? -1 : 1;
   return [...joints].sort((a, b) => {
@@ -99,7 +99,7 @@ function value(joint: JointDetails, column: Column): number | string | null {
   }
 }
 
-/** Four significant digits: enough to read, short enough for a table. */
+/** Rounds to four significant digits, which fit into a table. */
 function rounded(value: number): string {
   return general(Number(value.toPrecision(4)));
 }

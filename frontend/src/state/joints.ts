@@ -3,24 +3,24 @@ import type { JointControl } from "../protocol";
 import { Signal } from "../signal";
 import type { Kept } from "./kept";
 
-/** Joints in one message: the server accepts messages of 64 KiB. */
+/** The maximum number of joints in one message, because the server accepts messages of 64 KiB. */
 const MOST_AT_ONCE = 200;
 
 export type Positions = Readonly<Record<string, number>>;
 
-/** The Joints panel's rows and the last positions from the server. */
+/** The joints of the Joints panel, and the last positions from the server. */
 export class JointsState {
   readonly controlsChanged = new Signal();
   readonly positionsChanged = new Signal();
-  /** Null while nothing publishes from sliders. */
+  /** The controllable joints; null while no sliders publish positions. */
   controls: readonly JointControl[] | null = null;
   positions: Positions = {};
-  /** Links are dragged without holding Alt. */
+  /** Whether links can be dragged without Alt. */
   handsOn = false;
   private waiting: Record<string, number> | null = null;
-  /** The latest rows; a program that ends removes them. */
+  /** The latest joints, also after the program has ended. */
   private latest: readonly JointControl[] = [];
-  /** Joint positions of a program that was restarted, until the new one has sliders. */
+  /** The joint positions from before a restart of the program, until the new program has sliders. */
   private lost: Positions = {};
 
   constructor(
@@ -31,12 +31,15 @@ export class JointsState {
     connection.on("joint_positions", ({ positions }) => this.setPositions(positions));
   }
 
-  /** Has it outlive the page that links are dragged. */
+  /** Preserves across reloads of the page whether links can be dragged without Alt. */
   keep(kept: Kept): void {
     kept.part("hands on", () => this.handsOn, (on) => (this.handsOn = on));
   }
 
-  /** Moves joints, rad or m: at once; further moves in an animation frame are sent together. */
+  /**
+   * Moves joints, rad or m. The first move is sent immediately; further moves until the next animation frame are sent
+   * together.
+   */
   move(positions: Positions): void {
     if (this.waiting) {
       Object.assign(this.waiting, positions);
@@ -51,7 +54,7 @@ export class JointsState {
     });
   }
 
-  /** The joint that must be moved for `name` to get to `position`, and where to; null where nothing moves it. */
+  /** Returns the joint that must be moved so that `name` gets to `position`, and its position; null if no joint can. */
   leader(name: string, position: number): { control: JointControl; position: number } | null {
     const seen = new Set<string>();
     for (let at = position, next = name; !seen.has(next); ) {
@@ -66,7 +69,7 @@ export class JointsState {
     return null;
   }
 
-  /** The program was restarted: moved joints return to their positions, if it shows the same robot. */
+  /** Moves joints back to their positions after the program was restarted, if it shows the same robot. */
   programRestarted(isSame: boolean): void {
     const moved = this.latest.filter(({ name, mimic, zero }) => mimic === null && this.positions[name] !== zero);
     const before = moved.map(({ name }) => [name, this.positions[name]]).filter(([, position]) => position !== undefined);

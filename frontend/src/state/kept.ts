@@ -1,10 +1,12 @@
 import { PROTOCOL_VERSION } from "../protocol";
 import type { BrowserStorage } from "../storage";
 
-/** State from another version of the page is ignored. */
+/**
+ * The storage key; it contains the version of the protocol, so that state from another version of the page is ignored.
+ */
 const KEY = `linkwright.kept.${PROTOCOL_VERSION}`;
 
-/** The state of a page, for the page that replaces it when the user chooses another language. */
+/** State that survives the reload of the page when the user chooses another language. */
 export class Kept {
   private readonly parts = new Map<string, () => unknown>();
   private readonly found: Readonly<Record<string, unknown>>;
@@ -14,13 +16,16 @@ export class Kept {
     storage.removeItem(KEY);
   }
 
-  /** Calls `take` with the previous page's state of a name, if any, and `read` when this page is left. */
+  /**
+   * Registers a part of the state: calls `restore` with the previous page's value of this name, if any, and `read` when
+   * this page is left.
+   */
   part<T>(name: string, read: () => T, take: (value: T) => void): void {
     this.parts.set(name, read);
     if (name in this.found) take(this.found[name] as T);
   }
 
-  /** The page is about to be reloaded. */
+  /** Stores all parts, because the page is about to be reloaded. */
   leave(): void {
     this.storage.setItem(KEY, JSON.stringify(Object.fromEntries([...this.parts].map(([name, read]) => [name, read()]))));
   }

@@ -2,21 +2,21 @@ import type { JointDetails, LinkDetails } from "../protocol";
 import type { DescriptionModel } from "./description-model";
 import type { Kept } from "./kept";
 
-/** A link in the tree, and its parent joint. */
+/** A link in the tree, with its parent joint. */
 export interface TreeRow {
   readonly link: LinkDetails;
   readonly joint: JointDetails | null;
   readonly depth: number;
-  /** Whether it has children. */
+  /** Whether the link has children. */
   readonly inner: boolean;
   readonly folded: boolean;
 }
 
-/** Which links are folded. Links are known by name, so that a reload leaves the tree as it was. */
+/** The folded links, by name, so that a reload leaves the tree unchanged. */
 export class LinkTreeState {
   private folded = new Set<string>();
 
-  /** Has the folds outlive the page. */
+  /** Preserves the folds across reloads of the page. */
   keep(kept: Kept): void {
     kept.part("folded links", () => [...this.folded], (links) => (this.folded = new Set(links)));
   }
@@ -29,20 +29,20 @@ export class LinkTreeState {
     if (!this.folded.delete(link)) this.folded.add(link);
   }
 
-  /** Folds or opens everything. */
+  /** Folds or unfolds everything. */
   fold(model: DescriptionModel, all: boolean): void {
     this.folded = new Set(all ? model.links.keys() : []);
   }
 
-  /** Opens the ancestors of a link. */
+  /** Unfolds the ancestors of a link. */
   open(model: DescriptionModel, link: string): void {
     for (let joint = model.jointAbove(link); joint; joint = model.jointAbove(joint.parent)) this.folded.delete(joint.parent);
   }
 }
 
 /**
- * The rows of a tree from its root down. With something to search for, folds do not count and only links stay whose name,
- * or whose joint's name, has all of its words, with those above them.
+ * Returns the rows of a tree from its root down. During a search, folds are ignored, and only links remain whose name,
+ * or whose joint's name, contains all words of the search, with their ancestors.
  */
 export function flattened(model: DescriptionModel, state: LinkTreeState, search: string): TreeRow[] {
   const words = search.toLowerCase().split(/\s+/).filter((word) => word !== "");

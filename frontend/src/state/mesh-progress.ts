@@ -1,31 +1,31 @@
 import { Signal } from "../signal";
 
-/** Loading that finishes sooner is not reported. */
+/** Loads that take less time are not shown. */
 const TOLD_AFTER_MS = 500;
-/** Reading blocks the page, so files from this size on are reported before it begins. */
+/** Files of at least this size are shown before they are read, because reading blocks the page. */
 const LARGE_BYTES = 4_000_000;
 
-/** The progress of loading a mesh file. */
+/** The progress of a mesh file. */
 export interface MeshLoad {
-  /** The file's, without folders. */
+  /** The name of the file, without folders. */
   readonly name: string;
   bytes: number;
-  /** The total size; null if the server does not send it. */
+  /** The total size in bytes; null if the server does not send it. */
   total: number | null;
   stage: "fetching" | "reading";
 }
 
-/** Mesh files that take longer than a moment to load. */
+/** The mesh files that take longer than a moment to load. */
 export class MeshProgress {
   readonly changed = new Signal();
   private readonly shown = new Set<MeshLoad>();
 
-  /** The loads to be shown, in the order of their beginnings. */
+  /** The loads to show, in the order in which they started. */
   get loads(): readonly Readonly<MeshLoad>[] {
     return [...this.shown];
   }
 
-  /** Begins the loading of a file; the caller reports its progress. */
+  /** Starts tracking a file, whose loader then reports its progress. */
   begin(name: string): LoadReport {
     const load: MeshLoad = { name, bytes: 0, total: null, stage: "fetching" };
     const show = (): void => {
@@ -55,17 +55,17 @@ export class MeshProgress {
   }
 }
 
-/** The reports of a file's loader. */
+/** The functions with which a loader reports the progress of a file. */
 export interface LoadReport {
-  /** Reports the number of bytes received. */
+  /** Reports the number of bytes received so far. */
   came(bytes: number, total: number | null): void;
-  /** Reports that all bytes are received; resolves when the page shows it, because reading blocks painting. */
+  /** Reports that all bytes are received. Resolves once the page shows that, because reading blocks painting. */
   reads(): Promise<void>;
-  /** Reports that the file is loaded, or has failed. */
+  /** Reports that the file is loaded, or failed to load. */
   ended(): void;
 }
 
-/** Resolves when the page was painted; a hidden page is not painted, and continues after a while. */
+/** Resolves once the page was painted, or after a while, because a hidden page is not painted. */
 function painted(): Promise<void> {
   return new Promise((resolve) => {
     const timer = setTimeout(resolve, 200);

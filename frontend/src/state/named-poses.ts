@@ -1,7 +1,7 @@
 import { Signal } from "../signal";
 import type { TextStorage } from "../storage";
 
-/** Positions of joints under a name, rad or m. */
+/** Named joint positions, rad or m. */
 export interface NamedPose {
   readonly name: string;
   readonly positions: Readonly<Record<string, number>>;
@@ -9,7 +9,10 @@ export interface NamedPose {
 
 const KEY = "linkwright.poses.";
 
-/** The named poses of each robot, by its name. The browser stores them; a file moves them to another one. */
+/**
+ * The named poses of each robot, by the robot's name. The browser stores them; a file transfers them to another
+ * browser.
+ */
 export class PoseStore {
   readonly changed = new Signal();
 
@@ -24,7 +27,7 @@ export class PoseStore {
     }
   }
 
-  /** Keeps poses, each instead of one of the same name. */
+  /** Stores poses, replacing those with the same name. */
   save(robot: string, ...poses: readonly NamedPose[]): void {
     const all = new Map([...this.of(robot), ...poses].map((pose) => [pose.name, pose]));
     this.write(robot, [...all.values()]);
@@ -40,7 +43,7 @@ export class PoseStore {
   }
 }
 
-/** Poses as the group states of an SRDF file, which MoveIt reads too. */
+/** Returns poses as group states of an SRDF file, which MoveIt reads, too. */
 export function srdfOf(robot: string, poses: readonly NamedPose[]): string {
   const states = poses.map(({ name, positions }) => {
     const joints = Object.entries(positions).map(
@@ -51,7 +54,10 @@ export function srdfOf(robot: string, poses: readonly NamedPose[]): string {
   return ['<?xml version="1.0"?>', `<robot name="${escaped(robot)}">`, ...states, "</robot>", ""].join("\n");
 }
 
-/** The group states of an SRDF file; one name for several groups makes several poses, joints of several numbers are left out. */
+/**
+ * Returns the group states of an SRDF file. States of several groups with the same name become several poses; joints
+ * with several values are omitted.
+ */
 export function posesOf(srdf: string): NamedPose[] {
   const text = srdf.replace(/<!--[\s\S]*?-->/g, "");
   const poses = new Map<string, NamedPose>();
@@ -68,7 +74,7 @@ export function posesOf(srdf: string): NamedPose[] {
   return [...poses.values()];
 }
 
-/** Whether the joints are at a pose's positions, as far as it sets them. */
+/** Whether the joints are at the positions of a pose, as far as it sets them. */
 export function standsAs(pose: NamedPose, positions: Readonly<Record<string, number>>): boolean {
   return Object.entries(pose.positions).every(([name, value]) => {
     const position = positions[name];

@@ -1,4 +1,4 @@
-/** Six significant digits, as C++ streams and printf's %g print numbers. */
+/** Returns a number with six significant digits, like C++ streams and printf's %g. */
 export function general(value: number): string {
   if (!Number.isFinite(value)) return String(value);
   if (value === 0) return Object.is(value, -0) ? "-0" : "0";

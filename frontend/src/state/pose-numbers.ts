@@ -1,16 +1,16 @@
-/** x, y, z and qx, qy, qz, qw: metres and a unit quaternion. */
+/** x, y, z in m, and the unit quaternion qx, qy, qz, qw. */
 export type PoseNumbers = readonly [number, number, number, number, number, number, number];
 
 type Turn = readonly [number, number, number, number];
 type Vector = readonly [number, number, number];
 
-/** A pose given in the frame `a`, in the frame that `a` is given in. */
+/** Returns a pose `b` given in the frame `a`, in the frame in which `a` is given. */
 export function composed(a: PoseNumbers, b: PoseNumbers): PoseNumbers {
   const [x, y, z] = turned(turnOf(a), placeOf(b));
   return [a[0] + x, a[1] + y, a[2] + z, ...product(turnOf(a), turnOf(b))];
 }
 
-/** The pose of `b` in `a`, both given in one frame. */
+/** Returns the pose of `b` in `a`, where both are given in the same frame. */
 export function relative(a: PoseNumbers, b: PoseNumbers): PoseNumbers {
   const [x, y, z, w] = turnOf(a);
   const back: Turn = [-x, -y, -z, w];

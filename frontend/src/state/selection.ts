@@ -8,16 +8,19 @@ export interface SelectedItem {
   readonly key: string;
 }
 
-/** A link of one RobotModel display. */
+/** A link of a RobotModel display. */
 export interface SelectedLink {
   display: string;
   link: LinkScene;
 }
 
-/** The effect of a selection on the one before. */
+/** How a new selection is combined with the current one. */
 export type SelectionMode = "replace" | "add" | "remove";
 
-/** The selection in the scene and in the tree; links outlive a reload of the robot that still has them. */
+/**
+ * The selection in the scene and the panels; selected links stay selected when the robot is reloaded and still has
+ * them.
+ */
 export class SelectionState {
   readonly changed = new Signal<SelectedLink | null>();
   private current: readonly SelectedItem[] = [];
@@ -25,7 +28,7 @@ export class SelectionState {
 
   constructor(private readonly robots: ReadonlyMap<string, RobotScene>) {}
 
-  /** Has the selection outlive the page. */
+  /** Preserves the selection across reloads of the page. */
   keep(kept: Kept): void {
     kept.part("selection", () => this.current, (items) => (this.current = items));
   }
@@ -34,7 +37,7 @@ export class SelectionState {
     return this.current;
   }
 
-  /** The first link among them. */
+  /** The first selected link. */
   get selected(): SelectedLink | null {
     return this.link;
   }
@@ -53,7 +56,7 @@ export class SelectionState {
     if (!same) this.take([...next.values()]);
   }
 
-  /** Removes objects that their display no longer shows. */
+  /** Deselects objects that their display no longer shows. */
   drop(isThere: (item: SelectedItem) => boolean): void {
     const left = this.current.filter(isThere);
     if (left.length < this.current.length) this.take(left);

@@ -32,9 +32,9 @@ import { ViewState } from "./view";
 import { VoiceState } from "./voice/voice";
 import { WordsState } from "./voice/words";
 
-/** Everything the page knows, kept current from the server's messages. Panels and drawings listen to its parts. */
+/** The state of the page, which messages from the server keep up to date. Panels and drawings listen to its parts. */
 export class Session {
-  /** The newest description of each RobotModel display, by display id. */
+  /** The newest robot of each RobotModel display, by display ID. */
   readonly robots = new Map<string, RobotScene>();
   readonly frames = new FrameStore();
   readonly displays = new DisplaysState();
@@ -58,10 +58,10 @@ export class Session {
   readonly editing: EditingState;
   readonly robotChanged = new Signal<RobotScene>();
   readonly diagnosticsChanged = new Signal();
-  /** Answers `ask_provenance`. */
+  /** Emitted with the answer to `ask_provenance`. */
   readonly provenanceAnswered = new Signal<LinkProvenance>();
   readonly greeted = new Signal<Hello>();
-  /** A menu in the scene was requested. */
+  /** Emitted when a menu in the scene is to be opened. */
   readonly sceneMenu = new Signal<SceneMenu>();
   readonly focus = new ElementFocus(this.selection, this.robots);
   readonly inspect = new InspectState(browserStorage());
@@ -102,20 +102,20 @@ export class Session {
     this.keep();
   }
 
-  /** State of this page alone outlives it. */
+  /** Registers the state that only this page has, to preserve it across a reload. */
   private keep(): void {
     const { kept } = this;
     kept.part("program", () => this.program, (program) => (this.program = program));
     for (const each of [this.view, this.selection, this.focus, this.tools, this.joints]) each.keep(kept);
   }
 
-  /** Applies a property edit of the user: shown at once, and sent to the server. */
+  /** Applies a user's edit of a property: shows it immediately, and sends it to the server. */
   setProperty(id: string, value: PropertyValue): void {
     this.displays.setValue(id, value, null);
     this.connection.send({ type: "set_property", id, value });
   }
 
-  /** The first robot that has links, if any. */
+  /** The first robot that has links. */
   get robot(): RobotScene | null {
     for (const display of this.displays.displays) {
       const robot = this.robots.get(display.id);
@@ -124,7 +124,7 @@ export class Session {
     return null;
   }
 
-  /** Keeps pose and camera where the program was started again, unless it shows something else now. */
+  /** Keeps joint positions and camera when the program was restarted, unless it shows something else now. */
   private greet(hello: Hello): void {
     const before = this.program;
     this.program = hello;

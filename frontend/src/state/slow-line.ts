@@ -2,12 +2,12 @@ import type { DisplayData } from "../connection/data";
 import { Signal } from "../signal";
 import type { DisplayDataStore } from "./display-data";
 
-/** Over so long contents are counted for their rate, ms. */
+/** ms over which the rate of contents is measured. */
 const COUNTED_MS = 3000;
-/** A WebP of all pixels that is better than this looks as the image itself. */
+/** A WebP image at full resolution with a higher quality than this looks like the original. */
 const NOTICED_QUALITY = 70;
 
-/** The way in which a display's content was reduced. */
+/** How the content of a display was reduced. */
 export type Reduction =
   | { kind: "points"; step: number }
   | { kind: "image"; columns: number; rows: number; width: number; height: number; quality: number };
@@ -15,11 +15,11 @@ export type Reduction =
 export interface Reduced {
   display: string;
   reduction: Reduction;
-  /** How often content comes, Hz; null if there was too little to measure. */
+  /** The rate of contents, Hz; null if there were too few to measure it. */
   rate: number | null;
 }
 
-/** The contents that the server sends in less detail because the line to this page is slow. */
+/** The contents that the server reduces because the connection to this page is slow. */
 export class SlowLine {
   readonly changed = new Signal();
   private readonly known = new Map<string, { reduction: Reduction; times: number[] }>();

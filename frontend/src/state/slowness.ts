@@ -3,18 +3,18 @@ import { Signal } from "../signal";
 import type { DrawingPace } from "./drawing-pace";
 import type { SlowLine } from "./slow-line";
 
-/** The cause of a page's reduced data rate: its drawing, its program, or the connection between both. */
+/** The cause of a reduced data rate: the drawing of the page, the program, or the connection between them. */
 export type SlowCause = "page" | "program" | "line";
 
-/** The time between two looks at how late the page is, ms. */
+/** The interval at which the page's lateness is measured, ms. */
 const EVERY_MS = 50;
-/** Looks that count. */
+/** The number of measurements that are averaged. */
 const LOOKS = 40;
-/** Shares of time in which a busy page counts as late: above the first, until it is below the second. */
+/** The page counts as late from the first share of time on, until it falls below the second. */
 const LATE = 0.3;
 const TIMELY = 0.15;
 
-/** Finds the cause, as long as the page's data rate is reduced. */
+/** Finds the cause while the page's data rate is reduced. */
 export class Slowness {
   readonly changed = new Signal();
   private timer: ReturnType<typeof setTimeout> | undefined;
@@ -49,7 +49,7 @@ export class Slowness {
     if (wanted) this.lookLater();
   }
 
-  /** Messages wait for the page as long as its timers do. */
+  /** Schedules a measurement: messages wait for a busy page as long as its timers do. */
   private lookLater(): void {
     const due = this.now() + EVERY_MS;
     this.timer = setTimeout(() => {

@@ -4,7 +4,7 @@ import { Signal } from "../signal";
 import type { Kept } from "./kept";
 import { PropertyNode, PropertyRows } from "./properties";
 
-/** One tool of the toolbar. */
+/** A tool of the toolbar. */
 export class ToolState {
   readonly id: string;
   readonly cls: string;
@@ -21,22 +21,22 @@ export class ToolState {
   }
 }
 
-/** The tools of the file, and the one that this page has in hand. */
+/** The tools of the file, and the one that is active in this page. */
 export class ToolsState {
-  /** The tools are others now. */
+  /** The list of tools changed. */
   readonly listChanged = new Signal();
-  /** Another tool is in hand. */
+  /** The active tool changed. */
   readonly currentChanged = new Signal<ToolState | null>();
   readonly valueChanged = new Signal<ToolState>();
   readonly hintChanged = new Signal<string>();
-  /** Why the tool in hand refused a request; empty if it did not. */
+  /** Why the active tool did not do what was requested; empty to hide the notice. */
   readonly told = new Signal<string>();
   tools: readonly ToolState[] = [];
-  /** The tools that can be added. */
+  /** The classes of tools that can be added. */
   classes: readonly ToolClass[] = [];
   private inHand: ToolState | null = null;
   private text = "";
-  /** The page's tool that this one replaces. */
+  /** The ID of the tool that was active before the reload of the page. */
   private before: string | null = null;
 
   constructor(private readonly connection: Connection) {
@@ -44,7 +44,7 @@ export class ToolsState {
     connection.on("tool_property_changed", ({ id, value }) => this.setValue(id, value));
   }
 
-  /** Has the choice of the tool in hand outlive the page. */
+  /** Preserves the choice of the active tool across reloads of the page. */
   keep(kept: Kept): void {
     kept.part("tool", () => this.inHand?.id ?? null, (id) => (this.before = id));
   }
@@ -53,7 +53,7 @@ export class ToolsState {
     return this.inHand;
   }
 
-  /** The default tool: the first. */
+  /** The default tool: the first one. */
   get default(): ToolState | null {
     return this.tools.find((tool) => tool.supported) ?? null;
   }
@@ -69,14 +69,14 @@ export class ToolsState {
     this.hintChanged.emit(text);
   }
 
-  /** Takes a tool in hand. */
+  /** Activates a tool. */
   choose(tool: ToolState | null): void {
     if (tool === this.inHand || tool?.supported === false) return;
     this.inHand = tool;
     this.currentChanged.emit(tool);
   }
 
-  /** Takes a tool in hand, or puts it away when it is. */
+  /** Activates a tool, or the default tool if it is active already. */
   toggle(tool: ToolState): void {
     this.choose(tool === this.inHand ? this.default : tool);
   }

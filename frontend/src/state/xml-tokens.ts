@@ -1,4 +1,4 @@
-/** The kind of a piece of XML text, for its colour. */
+/** The kind of a token of XML text, which determines its colour. */
 type TokenKind = "text" | "tag" | "attribute" | "value" | "expression" | "comment" | "punctuation";
 
 export interface Token {
@@ -6,10 +6,10 @@ export interface Token {
   readonly text: string;
 }
 
-/** The construct that a line begins inside of. */
+/** The construct within which a line begins. */
 export type LineState = "text" | "tag" | "comment" | "cdata" | "instruction" | '"' | "'";
 
-/** One way into the parts that continue over line ends, and the way out of each. */
+/** Constructs that may span lines, with their ends and their openings. */
 const ENDS: Readonly<Partial<Record<LineState, string>>> = { comment: "-->", cdata: "]]>", instruction: "?>" };
 const OPENINGS: readonly (readonly [string, LineState])[] = [
   ["<!--", "comment"],
@@ -20,17 +20,20 @@ const TAG_PART = /^(?:\s+|\/?>|[^\s=/>"'<]+|=|["']|.)/u;
 /** A xacro expression or substitution in a value. */
 const EXPRESSION = /\$\$?(?:\{[^}]*\}?|\([^)]*\)?)/g;
 
-/** A line of text and whole tags without surprises, as nearly all are: it ends in the text in which it began. */
+/** A line that consists of text and complete tags only, as most do, and therefore ends as it began. */
 const PLAIN = /^[^<]*(?:<[^<>"'!?]*(?:"[^"<>]*"[^<>"']*)*>[^<]*)*$/;
 
-/** The tokens of one line that begins in `state`, and the state of the next line. Together they are the line. */
+/**
+ * Returns the tokens of a line that begins in `state`, and the state of the next line. The tokens concatenated are the
+ * line.
+ */
 export function tokenize(line: string, state: LineState): { tokens: Token[]; state: LineState } {
   const scanner = new Scanner(line, state);
   scanner.run();
   return { tokens: scanner.tokens, state: scanner.state };
 }
 
-/** The state at the beginning of each line. */
+/** Returns the state at the beginning of each line. */
 export function lineStates(lines: readonly string[]): LineState[] {
   let state: LineState = "text";
   return lines.map((line) => {
@@ -40,7 +43,7 @@ export function lineStates(lines: readonly string[]): LineState[] {
   });
 }
 
-/** Reads one line. Each step consumes at least a character, or changes the state. */
+/** Reads a line. Each step consumes at least one character, or changes the state. */
 class Scanner {
   readonly tokens: Token[] = [];
   private expectsName = false;
