@@ -7,7 +7,7 @@ import { clamp, formatNumber, parseNumber, stepFor } from "./numbers";
 import { TextEditor } from "./text-editor";
 import type { Editor, TreeItem } from "./tree-item";
 
-/** Makes the editor for an item; `current` gives the newest item of the row, `frames` the frames to offer. */
+/** Creates the editor for an item; `current` returns the newest item of the row, `frames` the frames to offer. */
 export function createEditor(item: TreeItem, current: () => TreeItem, frames: () => readonly string[]): Editor {
   const commit = (value: PropertyValue): void => current().set?.(value);
   if (item.kind === "group") return new PlainText();

@@ -5,10 +5,10 @@ import { strings } from "../strings";
 import { TextEditor } from "./text-editor";
 import type { Editor, TreeItem } from "./tree-item";
 
-/** Offers the names to choose from, at once or when they are known. */
+/** Passes the names to choose from to `show`, immediately or once they are known. */
 export type Offer = (item: TreeItem, show: (names: readonly string[]) => void) => void;
 
-/** The name of a frame or topic: any text, or one of those known from a list. */
+/** An editor for the name of a frame or topic: any text, or a name from a list. */
 export class NameEditor implements Editor {
   readonly element: HTMLElement;
   private readonly text: TextEditor;

@@ -4,15 +4,15 @@ import type { Editor, TreeItem } from "./tree-item";
 
 export interface TextEditorOptions {
   format: (value: PropertyValue) => string;
-  /** The value of a text, or null when it is invalid: the old value returns. */
+  /** Returns the value of a text; null if it is invalid, which restores the old value. */
   parse: (text: string) => PropertyValue;
   commit: (value: PropertyValue) => void;
-  /** The text after an up or down key. */
+  /** Returns the value after an up or down key. */
   step?: (text: string, direction: 1 | -1) => number | null;
   numeric?: boolean;
 }
 
-/** A line of text that becomes a value on Enter or when it is left, and the old one again on Escape. */
+/** A text field whose content becomes a value on Enter or when it loses the focus; Escape restores the old value. */
 export class TextEditor implements Editor {
   readonly element: HTMLInputElement;
   private shown = "";
@@ -65,7 +65,7 @@ export class TextEditor implements Editor {
         this.take();
       }
     } else {
-      // The tree's own keys do not apply while a text is edited.
+      // The tree's own keys must not act while a text is edited.
       event.stopPropagation();
       return;
     }
@@ -74,7 +74,7 @@ export class TextEditor implements Editor {
   }
 }
 
-/** Gives the keyboard back to the row. */
+/** Returns the focus to the row. */
 function leave(element: HTMLElement): void {
   element.closest<HTMLElement>("[role=treeitem]")?.focus();
 }

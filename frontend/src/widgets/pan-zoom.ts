@@ -5,10 +5,13 @@ const LARGEST = 4;
 const WHEEL_NOTCH = 480;
 const STEP_PX = 60;
 const STEP = 1.25;
-/** A press that moves less than this is a click. */
+/** Pixels; a press that moves less than this is a click. */
 const CLICK_SLOP = 4;
 
-/** Moves and scales an image with mouse, touch pad, fingers and keys: the point under the pointer stays there. */
+/**
+ * Moves and scales an image with mouse, touch pad, fingers and keys; zooming keeps the point under the pointer in
+ * place.
+ */
 export class PanZoom {
   private x = 0;
   private y = 0;
@@ -16,7 +19,7 @@ export class PanZoom {
   private travelled = 0;
   private readonly pointers = new Map<number, { x: number; y: number }>();
 
-  /** @param changed called with the transform for the image, px. */
+  /** @param changed - called with the transform for the image, px. */
   constructor(
     private readonly element: HTMLElement,
     private readonly changed: (x: number, y: number, scale: number) => void,
@@ -36,7 +39,7 @@ export class PanZoom {
     return this.zoom;
   }
 
-  /** Whether the pointer has moved too far since it was pressed to be a click. */
+  /** Whether the pointer has moved too far since the press to be a click. */
   get dragged(): boolean {
     return this.travelled >= CLICK_SLOP;
   }
@@ -46,7 +49,7 @@ export class PanZoom {
     this.changed(this.x, this.y, this.zoom);
   }
 
-  /** Shows an image of this size as large as it fits, but not larger than it is, with a margin. */
+  /** Fits an image of this size, with a margin, at its original size at most. */
   show(width: number, height: number, margin = 16): void {
     const { clientWidth, clientHeight } = this.element;
     const fits = Math.min((clientWidth - 2 * margin) / width, (clientHeight - 2 * margin) / height);
@@ -54,14 +57,14 @@ export class PanZoom {
     this.set((clientWidth - width * scale) / 2, Math.max(margin, (clientHeight - height * scale) / 2), scale);
   }
 
-  /** Shows an image of this size with legible texts; if it is too large for that, `point` is in the middle. */
+  /** Shows an image of this size with legible texts; if it is too large for that, `point` is centred. */
   open(width: number, height: number, text: number, point: readonly [number, number]): void {
     const { clientWidth, clientHeight } = this.element;
     const { x, y, scale } = legibleView([width, height], [clientWidth, clientHeight], text, point);
     this.set(x, y, scale);
   }
 
-  /** Moves a point of the image into sight: to the middle, if it is outside. */
+  /** Scrolls a point of the image into view: to the centre, if it is outside. */
   reveal(x: number, y: number, margin = 40): void {
     const { clientWidth, clientHeight } = this.element;
     const [at, below] = [this.x + x * this.zoom, this.y + y * this.zoom];
@@ -104,7 +107,7 @@ export class PanZoom {
     }
   }
 
-  /** Distance between the first two fingers, px. */
+  /** Returns the distance between the first two fingers, px. */
   private spread(): number {
     const [a, b] = [...this.pointers.values()];
     return a && b ? Math.hypot(a.x - b.x, a.y - b.y) : 0;

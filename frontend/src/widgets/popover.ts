@@ -1,9 +1,9 @@
-/** A press that moves further, in pixels, is a drag and no click: it turns the scene and closes nothing. */
+/** Pixels; a press that moves further is a drag, which rotates the scene and closes nothing. */
 const CLICK_REACH = 5;
 
 /**
- * Calls `close` on Escape, wherever the keyboard is, and on a click outside of all of `inside`, until the returned
- * function is called. `back` means that the focus returns to the element that opened it.
+ * Calls `close` on Escape, wherever the focus is, and on a click outside all of `inside`, until the returned function
+ * is called. `back` is whether the focus should return to the element that opened the popover.
  */
 export function closesOutside(inside: readonly Element[], close: (back: boolean) => void): () => void {
   let pressed: { x: number; y: number } | null = null;
@@ -17,7 +17,7 @@ export function closesOutside(inside: readonly Element[], close: (back: boolean)
     if (from && Math.hypot(event.clientX - from.x, event.clientY - from.y) < CLICK_REACH) close(false);
   };
   const keyed = (event: KeyboardEvent): void => {
-    // A menu or a dialog over it closes first.
+    // A menu or dialog over it closes first.
     if (event.key !== "Escape" || (event.target instanceof Element && event.target.closest("dialog, [role=menu], [role=listbox]"))) return;
     event.preventDefault();
     event.stopPropagation();

@@ -1,12 +1,12 @@
 import { coalesced, h } from "../dom";
 
-/** Rows beyond those in sight that are kept ready. */
+/** The number of rows kept ready beyond the visible ones. */
 const SPARE = 8;
 
-/** A list of any length of which only the rows in sight are in the page; all rows are of one height. */
+/** A list of any length in which only the visible rows are elements; all rows have the same height. */
 export class VirtualList<T> {
   readonly element = h("div", { class: "virtual-list", tabIndex: 0 });
-  /** Whether the end stays in sight when rows are added. */
+  /** Whether the list scrolls to the end when rows are added. */
   following = true;
   private readonly rows = h("div", { class: "virtual-rows" });
   private readonly space = h("div", { class: "virtual-space" }, this.rows);
@@ -31,7 +31,7 @@ export class VirtualList<T> {
     this.draw();
   }
 
-  /** Goes to the end and stays there. */
+  /** Scrolls to the end and follows it. */
   follow(): void {
     this.following = true;
     this.followingChanged();

@@ -1,4 +1,6 @@
-/** Calls `changed` when an element becomes visible or hidden: a hidden tab of the dock takes its panel out of the page. */
+/**
+ * Calls `changed` when an element becomes visible or hidden; the dock removes the panels of hidden tabs from the page.
+ */
 export function whenSeen(element: HTMLElement, changed: (seen: boolean) => void): void {
   let seen = false;
   new ResizeObserver(() => {
@@ -9,7 +11,7 @@ export function whenSeen(element: HTMLElement, changed: (seen: boolean) => void)
   }).observe(element);
 }
 
-/** Holds a resource as long as an element is visible; `shown` is called after each acquisition. */
+/** Holds a resource while an element is visible; `shown` is called after each acquisition. */
 export function holdWhileSeen(element: HTMLElement, hold: () => () => void, shown: () => void): void {
   let release: (() => void) | null = null;
   whenSeen(element, (seen) => {
