@@ -84,9 +84,9 @@ function start(app: HTMLElement): void {
   const tokens = new Tokens(addressBar(), browserStorage());
   const connection = new Connection(socketUrl(location.href, own, language), tokens);
   const door = new Door(connection, tokens, app);
-  // Before anything is drawn: the answer takes a moment.
+  // Connect before drawing anything: the answer takes a moment.
   connection.open();
-  // Browsers slow down the clock of pages that no user sees.
+  // Browsers slow down the timers of hidden pages, the retry timer among them.
   document.addEventListener("visibilitychange", () => {
     if (!document.hidden) connection.hurry();
   });
@@ -186,7 +186,7 @@ function addressBar(): AddressBar {
   };
 }
 
-/** The panels that depend on what there is, whichever arrangement is shown. */
+/** Opens and closes the panels that depend on available data, in whichever arrangement is shown. */
 function keepCurrent(dock: Dock, session: Session): void {
   const keepJoints = follow(dock, "joints", () => session.joints.controls !== null);
   const keepWorld = follow(dock, "world", () => session.modelling.active);
@@ -213,8 +213,9 @@ function keepCurrent(dock: Dock, session: Session): void {
 }
 
 /**
- * What opens a panel when there is something for it, and closes it when there no longer is: a moment later, since a
- * program that was started again has it soon, and the panel then is where the user had put it.
+ * Returns a function that opens a panel when there is something to show in it, and closes it when there no longer is.
+ * Closing waits a moment: a program that is restarted has something to show again soon, and the panel then stays where
+ * the user put it.
  */
 function follow(dock: Dock, id: PanelId, hasSomething: () => boolean): () => void {
   let closing: ReturnType<typeof setTimeout> | undefined;
@@ -225,7 +226,7 @@ function follow(dock: Dock, id: PanelId, hasSomething: () => boolean): () => voi
   };
 }
 
-/** Mouse and keys for the scene. */
+/** Connects mouse and keys to the scene. */
 function takeTools(stage: Stage, session: Session, model: (event: ToolEvent) => ToolEvent | null): Toolbox {
   const toolbox = new Toolbox(stage, session);
   const joints = new JointDrag(stage, session);
@@ -239,7 +240,7 @@ function takeTools(stage: Stage, session: Session, model: (event: ToolEvent) => 
   return toolbox;
 }
 
-/** Fetches what models the world when that is asked for first. */
+/** Loads the code for modelling the world when it is needed first. */
 function whenModelling(stage: Stage, session: Session, made: (modeller: Modeller) => void): void {
   const stop = session.modelling.changed.on(() => {
     if (!session.modelling.active) return;
@@ -248,7 +249,7 @@ function whenModelling(stage: Stage, session: Session, made: (modeller: Modeller
   });
 }
 
-/** Fetches the handles of a robot's parts when one is edited first. */
+/** Loads the handles of a robot's parts when one is edited first. */
 function whenEditing(stage: Stage, session: Session, made: (handles: PartHandles) => void): void {
   const stop = session.editing.changed.on(() => {
     if (!session.editing.active) return;
@@ -257,7 +258,10 @@ function whenEditing(stage: Stage, session: Session, made: (handles: PartHandles
   });
 }
 
-/** The keys of the File menu, and undo: they work everywhere but in dialogs; where text is typed, undo is the text's. */
+/**
+ * Binds the keys of the File menu, and undo. They work everywhere except in dialogs; in a text field, undo belongs to
+ * the field.
+ */
 function takeFileKeys(session: Session, files: FileCommands): void {
   const { configuration } = session;
   const keys = [
@@ -277,11 +281,11 @@ function takeFileKeys(session: Session, files: FileCommands): void {
     event.stopPropagation();
     found.run();
   };
-  // Before a field that is edited keeps its keys to itself: the browser would save the page.
+  // Capture the event: a field that is edited stops keys from bubbling, and the browser would save the page.
   document.addEventListener("keydown", taken, true);
 }
 
-/** Without WebGL everything else still works. */
+/** Creates the scene; returns null without WebGL, where everything else still works. */
 function makeStage(container: HTMLElement, session: Session, panels: PanelHost, theme: ThemeState): Stage | null {
   try {
     return new Stage(container, session, panels, theme, SERVED, new StandIns(standInWorker));
@@ -292,7 +296,7 @@ function makeStage(container: HTMLElement, session: Session, panels: PanelHost, 
   }
 }
 
-/** Vite makes a file of its own of a worker that is named so. */
+/** Starts the worker. The expression must have this form for Vite to bundle the worker as a separate file. */
 function standInWorker(): Worker {
   return new Worker(new URL("./scene/meshes/stand-in-worker.ts", import.meta.url), { type: "module" });
 }

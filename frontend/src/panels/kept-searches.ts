@@ -1,7 +1,7 @@
 import type { Kept } from "../state/kept";
 import type { Panel } from "./panel";
 
-/** Has what is searched for in panels outlive the page. */
+/** Preserves the search texts of panels across reloads of the page. */
 export function keepSearches(panels: readonly Panel[], kept: Kept): void {
   for (const { id, element } of panels) {
     const fields = [...element.querySelectorAll<HTMLInputElement>("input[type=search]")];
