@@ -195,7 +195,7 @@ export function publishInspection(
       return stage?.loop.framesDrawn ?? 0;
     },
     get robotsReach() {
-      return stage?.room.robotsReach ?? 0;
+      return stage?.freeRoom.robotsReach ?? 0;
     },
   };
   Object.defineProperty(window, "linkwright", { value: Object.freeze(inspection), enumerable: true });

@@ -4,7 +4,7 @@ export type TextStorage = Pick<Storage, "getItem" | "setItem">;
 export interface BrowserStorage extends TextStorage {
   removeItem(key: string): void;
   /** Whether the storage survives a reload of the page. */
-  readonly lasts: boolean;
+  readonly isPersistent: boolean;
 }
 
 /**
@@ -14,22 +14,22 @@ export interface BrowserStorage extends TextStorage {
 export function browserStorage(which: "localStorage" | "sessionStorage" = "localStorage"): BrowserStorage {
   try {
     const storage = (globalThis as Partial<Record<typeof which, Storage>>)[which];
-    if (storage) return kept(storage);
+    if (storage) return persistent(storage);
   } catch {
     // The browser's settings forbid it.
   }
   const texts = new Map<string, string>();
   return {
-    lasts: false,
+    isPersistent: false,
     getItem: (key) => texts.get(key) ?? null,
     setItem: (key, text) => void texts.set(key, text),
     removeItem: (key) => void texts.delete(key),
   };
 }
 
-function kept(storage: Storage): BrowserStorage {
+function persistent(storage: Storage): BrowserStorage {
   return {
-    lasts: true,
+    isPersistent: true,
     getItem: (key) => storage.getItem(key),
     setItem: (key, text) => {
       try {

@@ -2,7 +2,7 @@ import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { ComparedDescriptions, ComparedItem } from "../src/protocol";
 import { shortPlace } from "../src/panels/place";
-import { ComparisonState, grouped, MARK_COLORS, marksIn } from "../src/state/comparison";
+import { ComparisonState, groupDifferences, MARK_COLORS, marksIn } from "../src/state/comparison";
 
 function item(part: Partial<ComparedItem> = {}): ComparedItem {
   return {
@@ -43,8 +43,8 @@ describe("two descriptions in one scene", () => {
   });
 
   it("draws all of the old robot in one colour, behind the new one, and what is gone more firmly in its own", () => {
-    const ghost = comparison.instead("display-2", "arm");
-    const gone = comparison.instead("display-2", "camera");
+    const ghost = comparison.overrideOf("display-2", "arm");
+    const gone = comparison.overrideOf("display-2", "camera");
     expect(ghost).toMatchObject({ behind: true, firm: false });
     expect(gone).toMatchObject({ behind: true, firm: true });
     expect(gone?.color.map((part) => Math.round(part * 255))).toEqual([0xcc, 0x33, 0x77]);
@@ -52,15 +52,15 @@ describe("two descriptions in one scene", () => {
   });
 
   it("draws of the new robot only what differs in another colour, and nothing when marks are off", () => {
-    expect(comparison.instead("display-1", "arm")?.behind).toBeUndefined();
-    expect(comparison.instead("display-1", "base")).toBeNull();
-    expect(comparison.instead("display-7", "arm")).toBeNull();
+    expect(comparison.overrideOf("display-1", "arm")?.behind).toBeUndefined();
+    expect(comparison.overrideOf("display-1", "base")).toBeNull();
+    expect(comparison.overrideOf("display-7", "arm")).toBeNull();
     const changed = vi.fn();
     comparison.changed.on(changed);
     comparison.marks = false;
     expect(changed).toHaveBeenCalledTimes(1);
-    expect(comparison.instead("display-1", "arm")).toBeNull();
-    expect(comparison.instead("display-2", "camera")).toEqual(comparison.instead("display-2", "arm"));
+    expect(comparison.overrideOf("display-1", "arm")).toBeNull();
+    expect(comparison.overrideOf("display-2", "camera")).toEqual(comparison.overrideOf("display-2", "arm"));
   });
 
   it("names the link or joint that shows a difference, in the robot that has it", () => {
@@ -73,12 +73,12 @@ describe("two descriptions in one scene", () => {
   it("knows nothing of a program that it was not told of", () => {
     connection.message.emit({ type: "hello", protocol: 1, version: "", title: "", run: "1" });
     expect(comparison.compared).toBeNull();
-    expect(comparison.instead("display-2", "arm")).toBeNull();
+    expect(comparison.overrideOf("display-2", "arm")).toBeNull();
     expect(comparison.isOld("")).toBe(false);
   });
 
   it("puts differences about one thing together, and into the legend what there is", () => {
-    const groups = grouped(TOLD.items);
+    const groups = groupDifferences(TOLD.items);
     expect(groups.map(({ items, kind }) => [items.length, kind])).toEqual([[2, "changed"], [1, "changed"], [1, "removed"]]);
     expect(marksIn([TOLD.new, TOLD.old])).toEqual(["changed", "removed", "old"]);
   });

@@ -54,7 +54,7 @@ function opened(): { connection: Connection; socket: FakeSocket } {
   return { connection, socket: FakeSocket.made[0]! };
 }
 
-function page(href: string, stored?: string, lasts = true): { tokens: Tokens; storage: BrowserStorage; address: AddressBar } {
+function page(href: string, stored?: string, isPersistent = true): { tokens: Tokens; storage: BrowserStorage; address: AddressBar } {
   const address = {
     href,
     moveTo(next: string) {
@@ -63,7 +63,7 @@ function page(href: string, stored?: string, lasts = true): { tokens: Tokens; st
   };
   const texts = new Map(stored === undefined ? [] : [["linkwright.token", stored]]);
   const storage = {
-    lasts,
+    isPersistent,
     getItem: (key: string) => texts.get(key) ?? null,
     setItem: (key: string, text: string) => void texts.set(key, text),
     removeItem: (key: string) => void texts.delete(key),
@@ -76,7 +76,7 @@ describe("the token", () => {
     const { tokens, storage, address } = page("http://localhost:7447/?token=abc&displays=own#x");
     expect(tokens.current).toBe("abc");
     expect(storage.getItem("linkwright.token")).toBeNull();
-    tokens.accepted("abc");
+    tokens.accept("abc");
     expect(address.href).toBe("http://localhost:7447/?displays=own#x");
     expect(new Tokens(address, storage).current).toBe("abc");
     expect(tokens.link).toBe("http://localhost:7447/?displays=own&token=abc#x");
@@ -84,19 +84,19 @@ describe("the token", () => {
 
   it("stays in the address where the browser keeps nothing", () => {
     const { tokens, address } = page("http://localhost:7447/?token=abc", undefined, false);
-    tokens.accepted("abc");
+    tokens.accept("abc");
     expect(address.href).toBe("http://localhost:7447/?token=abc");
   });
 
   it("of the address comes first, and that of an old address takes nothing away", () => {
     const { tokens, storage } = page("http://localhost:7447/?token=old", "good");
     expect(tokens.current).toBe("old");
-    expect(tokens.refused()).toBe(true);
+    expect(tokens.refuse()).toBe(true);
     expect(tokens.current).toBe("good");
-    tokens.accepted("good");
+    tokens.accept("good");
     expect(tokens.current).toBe("good");
     expect(storage.getItem("linkwright.token")).toBe("good");
-    expect(tokens.refused()).toBe(false);
+    expect(tokens.refuse()).toBe(false);
   });
 
   it("is found in an address, or is the text", () => {
@@ -271,7 +271,7 @@ describe("the connection", () => {
       expect(connection.state).toBe("ended");
       expect(new Set(asked).size).toBe(asked.length);
       const before = asked.length;
-      connection.hurry();
+      connection.retryNow();
       await vi.advanceTimersByTimeAsync(0);
       expect(asked).toHaveLength(before + 1);
     });

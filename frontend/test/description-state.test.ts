@@ -7,9 +7,9 @@ import { AngleUnits } from "../src/state/angle-unit";
 import { DescriptionModel } from "../src/state/description-model";
 import { layOut } from "../src/state/diagram-layout";
 import { InspectState } from "../src/state/inspect";
-import { cells, sorted } from "../src/state/joint-table";
-import { flattened, LinkTreeState } from "../src/state/link-tree";
-import { general } from "../src/state/number-text";
+import { cellTexts, sortJoints } from "../src/state/joint-table";
+import { visibleRows, LinkTreeState } from "../src/state/link-tree";
+import { formatGeneral } from "../src/state/number-text";
 import { Session } from "../src/state/session";
 import { browserStorage } from "../src/storage";
 import { display, robot, tree } from "./messages";
@@ -154,13 +154,13 @@ describe("the model", () => {
 
   it("is listed as folds and search want it", () => {
     const state = new LinkTreeState();
-    const names = (search = ""): string[] => flattened(model, state, search).map((row) => row.link.name);
+    const names = (search = ""): string[] => visibleRows(model, state, search).map((row) => row.link.name);
     expect(names()).toEqual(["base", "right", "left", "tip"]);
     state.toggle("left");
     expect(names()).toEqual(["base", "right", "left"]);
     expect(names("FIX")).toEqual(["base", "left", "tip"]);
     expect(names("no such")).toEqual([]);
-    state.open(model, "tip");
+    state.reveal(model, "tip");
     expect(names()).toHaveLength(4);
   });
 
@@ -185,7 +185,7 @@ describe("the model", () => {
 describe("numbers", () => {
   it("are written as C++ streams write them", () => {
     const values = [0, -0, 1, 0.1, -0.095, 1.5707963267948966, 123456, 1234567, 0.0001, 0.00001234, 1e-20, 1e21, 0.30000000000000004];
-    expect(values.map(general)).toEqual(
+    expect(values.map(formatGeneral)).toEqual(
       "0 -0 1 0.1 -0.095 1.5708 123456 1.23457e+06 0.0001 1.234e-05 1e-20 1e+21 0.3".split(" "),
     );
   });
@@ -200,15 +200,15 @@ describe("the joint table", () => {
   it("has units, in degrees where the user wants them", () => {
     const angles = new AngleUnits(browserStorage());
     const one = joint("a", "b", "c", { damping: 0.5, mimic: { joint: "m", multiplier: -1, offset: Math.PI / 2 } });
-    expect(cells(one, angles, words)).toMatchObject({ lower: "-1 rad", effort: "4 N m", dynamics: "d 0.5", mimic: "−m + 1.571 rad" });
+    expect(cellTexts(one, angles, words)).toMatchObject({ lower: "-1 rad", effort: "4 N m", dynamics: "d 0.5", mimic: "−m + 1.571 rad" });
     angles.current = "deg";
-    expect(cells(one, angles, words)).toMatchObject({ upper: "114.6 deg", velocity: "171.9 deg/s", mimic: "−m + 90 deg" });
-    expect(cells({ ...one, kind: "prismatic" }, angles, words)).toMatchObject({ lower: "-1 m", effort: "4 N" });
+    expect(cellTexts(one, angles, words)).toMatchObject({ upper: "114.6 deg", velocity: "171.9 deg/s", mimic: "−m + 90 deg" });
+    expect(cellTexts({ ...one, kind: "prismatic" }, angles, words)).toMatchObject({ lower: "-1 m", effort: "4 N" });
   });
 
   it("sorts by number or name, and puts what has none last", () => {
     const joints = [joint("j10", "b", "c", { upper: null }), joint("j2", "b", "c", { upper: 1 }), joint("j1", "b", "c", { upper: 10 })];
-    const names = (column: "name" | "upper", down = false): string[] => sorted(joints, column, down).map((each) => each.name);
+    const names = (column: "name" | "upper", down = false): string[] => sortJoints(joints, column, down).map((each) => each.name);
     expect(names("name")).toEqual(["j1", "j2", "j10"]);
     expect(names("upper")).toEqual(["j2", "j1", "j10"]);
     expect(names("upper", true)).toEqual(["j1", "j2", "j10"]);
@@ -219,13 +219,13 @@ describe("what is to be seen of the invisible", () => {
   it("is remembered, and rubbish is no memory", () => {
     const storage = browserStorage();
     const state = new InspectState(storage);
-    expect(state.any).toBe(false);
+    expect(state.isActive).toBe(false);
     state.set("joints", true);
     state.scale = 2;
     const again = new InspectState(storage);
     expect([again.current.joints, again.current.boxes, again.scale]).toEqual([true, false, 2]);
     storage.setItem("linkwright.inspect", '{"joints": 5, "scale": -1');
-    expect(new InspectState(storage).any).toBe(false);
+    expect(new InspectState(storage).isActive).toBe(false);
   });
 });
 

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { tidyTree, type TreeNode } from "../src/state/tidy-tree";
+import { layOutTree, type TreeNode } from "../src/state/tidy-tree";
 import { lineStates, tokenize, type LineState } from "../src/state/xml-tokens";
 
 function kinds(line: string, state: LineState = "text"): string[] {
@@ -68,7 +68,7 @@ describe("the diagram's layout", () => {
   const leaf = (id: string, width = 10): TreeNode => ({ id, width, height: 4, children: [] });
 
   it("puts parents over the middle of their children, level by level", () => {
-    const { nodes, width, height } = tidyTree({ ...leaf("a"), children: [leaf("b"), leaf("c")] }, 2, 6);
+    const { nodes, width, height } = layOutTree({ ...leaf("a"), children: [leaf("b"), leaf("c")] }, 2, 6);
     expect(nodes.map(({ node, x, y, parent }) => [node.id, x, y, parent?.node.id])).toEqual([
       ["a", 11, 2, undefined],
       ["b", 5, 12, "a"],
@@ -79,7 +79,7 @@ describe("the diagram's layout", () => {
 
   it("never lets nodes overlap, and lets subtrees reach under each other", () => {
     const deep = { ...leaf("b"), children: [{ ...leaf("c"), children: [leaf("d", 60), leaf("e", 60)] }] };
-    const { nodes, width } = tidyTree({ ...leaf("a"), children: [deep, leaf("f"), leaf("g")] }, 2, 6);
+    const { nodes, width } = layOutTree({ ...leaf("a"), children: [deep, leaf("f"), leaf("g")] }, 2, 6);
     for (const one of nodes) {
       for (const other of nodes) {
         if (one === other || one.y !== other.y) continue;
@@ -93,6 +93,6 @@ describe("the diagram's layout", () => {
   it("takes a chain of thousands", () => {
     let chain = leaf("end");
     for (let i = 0; i < 5000; i++) chain = { ...leaf(`${i}`), children: [chain] };
-    expect(tidyTree(chain, 2, 6).nodes).toHaveLength(5001);
+    expect(layOutTree(chain, 2, 6).nodes).toHaveLength(5001);
   });
 });

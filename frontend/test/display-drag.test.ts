@@ -82,7 +82,7 @@ describe("groups", () => {
 
   it("hold displays in their order", () => {
     const state = displays();
-    expect(state.within(null).map((each) => each.id)).toEqual(["grid", "sensors", "tf"]);
-    expect(state.within(state.find("sensors") ?? null).map((each) => each.id)).toEqual(["laser", "deep"]);
+    expect(state.childrenOf(null).map((each) => each.id)).toEqual(["grid", "sensors", "tf"]);
+    expect(state.childrenOf(state.find("sensors") ?? null).map((each) => each.id)).toEqual(["laser", "deep"]);
   });
 });

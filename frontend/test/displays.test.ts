@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { fadeForAge } from "../src/scene/displays/fade";
-import { gridLines, type GridShape, inPieces } from "../src/scene/displays/grid-lines";
+import { gridLines, type GridShape, splitLines } from "../src/scene/displays/grid-lines";
 
 const GRID: GridShape = { cells: 10, normalCells: 0, cellSize: 1, plane: "XY" };
 
@@ -34,13 +34,13 @@ describe("Grid", () => {
   });
 
   it("is drawn in pieces that make up its lines end to end", () => {
-    expect([...inPieces(new Float32Array([0, 0, 0, 2, 4, 0, 1, 1, 1, 1, 1, 5]), 2)]).toEqual(
+    expect([...splitLines(new Float32Array([0, 0, 0, 2, 4, 0, 1, 1, 1, 1, 1, 5]), 2)]).toEqual(
       [[0, 0, 0, 1, 2, 0], [1, 2, 0, 2, 4, 0], [1, 1, 1, 1, 1, 3], [1, 1, 3, 1, 1, 5]].flat(),
     );
     const whole = gridLines(GRID);
-    expect([...inPieces(whole, 1)]).toEqual([...whole]);
-    expect(inPieces(whole, 10).length).toBe(10 * whole.length);
-    expect(bounds(inPieces(whole, 10))).toEqual(bounds(whole));
+    expect([...splitLines(whole, 1)]).toEqual([...whole]);
+    expect(splitLines(whole, 10).length).toBe(10 * whole.length);
+    expect(bounds(splitLines(whole, 10))).toEqual(bounds(whole));
   });
 });
 

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { DrawingPace } from "../src/state/drawing-pace";
 
 function frames(pace: DrawingPace, count: number, late: boolean): void {
-  for (let i = 0; i < count; i++) pace.frame(late);
+  for (let i = 0; i < count; i++) pace.countFrame(late);
 }
 
 describe("the pace of drawing", () => {
@@ -12,7 +12,7 @@ describe("the pace of drawing", () => {
     pace.changed.on(() => changes++);
     frames(pace, 44, true);
     expect(pace.isSlow).toBe(false);
-    pace.frame(true);
+    pace.countFrame(true);
     expect([pace.isSlow, changes]).toEqual([true, 1]);
     frames(pace, 44, false);
     expect(pace.isSlow).toBe(true);

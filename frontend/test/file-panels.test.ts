@@ -11,7 +11,7 @@ class BareDock implements Arrangement {
   readonly changed = new Signal();
   readonly kept = new Map<string, readonly PanelId[]>();
   file: string | null = null;
-  listed: readonly PanelName[] | null = null;
+  panelsOfFile: readonly PanelName[] | null = null;
   shown: readonly PanelId[] = ["displays", "views", "time", "links"];
 
   open(id: PanelId): void {
@@ -28,7 +28,7 @@ class BareDock implements Arrangement {
     return found !== undefined;
   }
 
-  keepFor(file: string): void {
+  storeFor(file: string): void {
     this.file = file;
     this.kept.set(file, this.shown);
   }
@@ -79,7 +79,7 @@ describe("the panels of a file", () => {
   it("are open when the browser sees the file for the first time", () => {
     tell(1, "/a.rviz", ["displays", "views"]);
     expect(dock.shown).toEqual(["displays", "views", "links"]);
-    expect([dock.file, dock.listed]).toEqual(["/a.rviz", ["displays", "views"]]);
+    expect([dock.file, dock.panelsOfFile]).toEqual(["/a.rviz", ["displays", "views"]]);
     expect(sent).toEqual([]);
   });
 
@@ -160,20 +160,20 @@ describe("the arrangements that the browser keeps", () => {
 
   it("are of the last files, the newest first", () => {
     expect([layouts.latest("wide"), layouts.find("/0.rviz", "wide")]).toEqual([null, null]);
-    for (let i = 0; i < 20; i++) layouts.keep(layout(`/${i}.rviz`));
+    for (let i = 0; i < 20; i++) layouts.store(layout(`/${i}.rviz`));
     expect(layouts.latest("wide")?.file).toBe("/19.rviz");
     expect(layouts.find("/8.rviz", "wide")?.file).toBe("/8.rviz");
     expect(layouts.find("/7.rviz", "wide")).toBeNull();
-    layouts.keep(layout("/8.rviz"));
+    layouts.store(layout("/8.rviz"));
     expect(layouts.latest("wide")?.file).toBe("/8.rviz");
   });
 
   it("are others in windows of another form", () => {
-    layouts.keep(layout("/a.rviz", "narrow"));
-    layouts.keep(layout("/b.rviz"));
+    layouts.store(layout("/a.rviz", "narrow"));
+    layouts.store(layout("/b.rviz"));
     expect(layouts.latest("narrow")?.file).toBe("/a.rviz");
     expect(layouts.find("/a.rviz", "wide")).toBeNull();
-    layouts.keep(layout("/a.rviz"));
+    layouts.store(layout("/a.rviz"));
     expect(layouts.find("/a.rviz", "narrow")?.form).toBe("narrow");
     expect(layouts.find("/a.rviz", "wide")?.form).toBe("wide");
     expect(layouts.find("/a.rviz", "low")).toBeNull();

@@ -2,7 +2,7 @@ import { BoxGeometry, ColorManagement, Mesh, Vector3, type Color, type DataTextu
 import { describe, expect, it } from "vitest";
 import { Backdrop } from "../src/scene/backdrop";
 import { ContactShadow } from "../src/scene/contact-shadow";
-import { shadesOf } from "../src/scene/displays/grid-lines";
+import { fadedColors } from "../src/scene/displays/grid-lines";
 import { pointsOn, samplesOf } from "../src/scene/robot/surface-samples";
 
 function boxAt(x: number, z: number): Mesh {
@@ -44,7 +44,7 @@ describe("points of a surface", () => {
 describe("the shade on the ground", () => {
   it("is dark below what stands there, fades beside it, and ends", () => {
     const shadow = new ContactShadow();
-    shadow.fall([boxAt(3, 0.5)], 0);
+    shadow.update([boxAt(3, 0.5)], 0);
     expect(shadow.ground.position).toEqual(new Vector3(3, 0, 0));
     const [below, beside, far] = [3, 3.61, 3.8].map((x) => shadeAt(shadow, x, 0)) as [number, number, number];
     expect(below).toBeGreaterThan(100);
@@ -55,7 +55,7 @@ describe("the shade on the ground", () => {
   it("is fainter below what hovers", () => {
     const [standing, hovering] = [0.5, 1.5].map((z) => {
       const shadow = new ContactShadow();
-      shadow.fall([boxAt(0, z)], 0);
+      shadow.update([boxAt(0, z)], 0);
       return shadeAt(shadow, 0, 0);
     }) as [number, number];
     expect(hovering).toBeLessThan(standing * 0.8);
@@ -65,18 +65,18 @@ describe("the shade on the ground", () => {
   it("follows what moves, and goes with it", () => {
     const shadow = new ContactShadow();
     const box = boxAt(0, 0.5);
-    shadow.fall([box], 0);
+    shadow.update([box], 0);
     box.position.x = 5;
     box.updateMatrixWorld();
-    shadow.fall([box], 0);
+    shadow.update([box], 0);
     expect(shadow.ground.position.x).toBe(5);
-    shadow.fall([], 0);
+    shadow.update([], 0);
     expect(shadow.ground.visible).toBe(false);
   });
 });
 
 it("lines of a grid fade towards its end", () => {
-  const shades = shadesOf(new Float32Array([0, 0, 0, 1, 0, 0, 2, 0, 0, 4, 0, 0]));
+  const shades = fadedColors(new Float32Array([0, 0, 0, 1, 0, 0, 2, 0, 0, 4, 0, 0]));
   expect([shades[3], shades[7], shades[11], shades[15]]).toEqual([1, 1 - 1 / 16, 0.75, 0]);
 });
 

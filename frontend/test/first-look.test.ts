@@ -1,7 +1,7 @@
 import { Box3, Matrix4, Vector3, type Raycaster } from "three";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { lookFirst, type LookedAt } from "../src/scene/first-look";
+import { lookFirst, type FirstLookWorld } from "../src/scene/first-look";
 import { Session } from "../src/state/session";
 import type { ViewState } from "../src/state/view";
 import { distanceBetween, type Vector } from "../src/state/views/vector";
@@ -32,7 +32,7 @@ afterEach(() => {
 });
 
 /** A hall with a robot, or without; a wall stands at each of these x, endless along y and as high as said. */
-class Hall implements LookedAt {
+class Hall implements FirstLookWorld {
   camera: Matrix4 | null = null;
   constructor(
     public hasRobots: boolean,

@@ -61,7 +61,7 @@ describe("the frame loop", () => {
   it("shows what is beside the scene while it is held", () => {
     const loop = new FrameLoop(() => undefined, true);
     const show = vi.fn();
-    loop.beside(show);
+    loop.schedule(show);
     run(100);
     expect(show).toHaveBeenCalledTimes(1);
   });
@@ -150,18 +150,18 @@ describe("the frame loop", () => {
     loop.invalidate();
     run(1000);
     draw.mockClear();
-    run(1000, () => loop.beside(show));
+    run(1000, () => loop.schedule(show));
     expect(draw).not.toHaveBeenCalled();
     expect(show.mock.calls.length).toBeGreaterThan(27);
     expect(show.mock.calls.length).toBeLessThan(32);
-    loop.beside(show);
+    loop.schedule(show);
     expect(loop.settled).toBe(false);
     run(100);
     expect(loop.settled).toBe(true);
     const times: number[] = [];
     const [shown, drawn] = [show.mock.calls.length, loop.framesDrawn];
     run(1000, () => {
-      loop.beside(() => times.push(now));
+      loop.schedule(() => times.push(now));
       loop.invalidate();
     });
     expect(new Set(times).size).toBe(loop.framesDrawn - drawn);

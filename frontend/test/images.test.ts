@@ -34,7 +34,7 @@ describe("files of images", () => {
   it("are unpacked one at a time, and of those that come meanwhile only the newest", async () => {
     const shown: number[] = [];
     const image = new ImageCanvas();
-    for (let i = 0; i < 30; i++) image.take(file(), () => shown.push(i));
+    for (let i = 0; i < 30; i++) image.show(file(), () => shown.push(i));
     expect(unpacking).toHaveLength(1);
     await unpacked();
     expect(unpacking).toHaveLength(1);
@@ -46,8 +46,8 @@ describe("files of images", () => {
 
   it("are not shown after they were taken away", async () => {
     const image = new ImageCanvas();
-    image.take(file(), () => undefined);
-    image.take(file(), () => undefined);
+    image.show(file(), () => undefined);
+    image.show(file(), () => undefined);
     image.clear();
     await unpacked();
     expect(unpacking).toHaveLength(0);

@@ -35,7 +35,7 @@ beforeEach(() => {
     focalShapeVisible: false,
     viewport: { size: { width: 100, height: 100 } },
     picker: {
-      at: () => under && { display: "d", drawing, hit: { key: under, distance: 1, point: new Vector3() } },
+      objectAt: () => under && { display: "d", drawing, hit: { key: under, distance: 1, point: new Vector3() } },
       rayAt: () => new Raycaster(),
       selectAt: () => undefined,
     },

@@ -1,9 +1,9 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { halvesOf } from "../src/panels/joints/joint-row";
+import { splitName } from "../src/panels/joints/joint-row";
 import type { JointControl, PageMessage, ServerMessage } from "../src/protocol";
 import { JointsState } from "../src/state/joints";
-import { PoseStore, posesOf, srdfOf, standsAs } from "../src/state/named-poses";
+import { PoseStore, fromSrdf, toSrdf, matchesPose } from "../src/state/named-poses";
 import { roundTrip, Sweep } from "../src/state/sweep";
 import { browserStorage } from "../src/storage";
 
@@ -93,18 +93,18 @@ describe("named poses", () => {
     const store = new PoseStore(storage);
     store.save("mbot", home, { name: "up", positions: { a: 1 } });
     store.save("mbot", { name: "home", positions: { a: 2 } });
-    expect(new PoseStore(storage).of("mbot").map((pose) => [pose.name, pose.positions["a"]])).toEqual([
+    expect(new PoseStore(storage).posesOf("mbot").map((pose) => [pose.name, pose.positions["a"]])).toEqual([
       ["home", 2],
       ["up", 1],
     ]);
-    expect(store.of("other")).toEqual([]);
+    expect(store.posesOf("other")).toEqual([]);
     store.remove("mbot", "home");
-    expect(store.of("mbot").map((pose) => pose.name)).toEqual(["up"]);
+    expect(store.posesOf("mbot").map((pose) => pose.name)).toEqual(["up"]);
   });
 
   it("go into an SRDF file and come back", () => {
     const poses = [home, { name: 'say "hi" & go', positions: { a: 3 } }];
-    expect(posesOf(srdfOf("r&d", poses))).toEqual(poses);
+    expect(fromSrdf(toSrdf("r&d", poses))).toEqual(poses);
   });
 
   it("are read from a file of MoveIt", () => {
@@ -116,16 +116,16 @@ describe("named poses", () => {
       </group_state>
       <group_state group="hand" name="ready"><joint name="z" value="0"></joint></group_state>
     </robot>`;
-    expect(posesOf(text)).toEqual([
+    expect(fromSrdf(text)).toEqual([
       { name: "ready", positions: { x: 1.5, y: -2 } },
       { name: "ready (hand)", positions: { z: 0 } },
     ]);
-    expect(posesOf("no XML at all")).toEqual([]);
+    expect(fromSrdf("no XML at all")).toEqual([]);
   });
 
   it("know whether the robot stands so", () => {
-    expect(standsAs(home, { a: 0.5, "b<1>": 0, c: 9 })).toBe(true);
-    expect(standsAs(home, { a: 0.51 })).toBe(false);
+    expect(matchesPose(home, { a: 0.5, "b<1>": 0, c: 9 })).toBe(true);
+    expect(matchesPose(home, { a: 0.51 })).toBe(false);
   });
 });
 
@@ -154,9 +154,9 @@ describe("a sweep", () => {
 
 describe("the name of a joint", () => {
   it("is whole where it is short, and keeps its end where it is long", () => {
-    expect(halvesOf("j1")).toEqual(["j1", ""]);
-    expect(halvesOf("left_joint")).toEqual(["left_joint", ""]);
-    expect(halvesOf("front_left_wheel_joint")).toEqual(["front_left_", "wheel_joint"]);
-    expect(halvesOf("front_left_caster_rotation_joint")[1]).toBe("rotation_joint");
+    expect(splitName("j1")).toEqual(["j1", ""]);
+    expect(splitName("left_joint")).toEqual(["left_joint", ""]);
+    expect(splitName("front_left_wheel_joint")).toEqual(["front_left_", "wheel_joint"]);
+    expect(splitName("front_left_caster_rotation_joint")[1]).toBe("rotation_joint");
   });
 });

@@ -1,11 +1,11 @@
 import type { BufferGeometry } from "three";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { progressText } from "../src/panels/over-scene/mesh-notice";
-import { mended } from "../src/scene/meshes/collada";
+import { fixXml } from "../src/scene/meshes/collada";
 import { readMesh } from "../src/scene/meshes/formats";
 import type { MeshFiles } from "../src/scene/meshes/mesh-files";
 import { MeshLibrary } from "../src/scene/meshes/mesh-library";
-import { collapseUnreal } from "../src/scene/meshes/mesh-numbers";
+import { collapseNonFinite } from "../src/scene/meshes/mesh-numbers";
 import type { MeshTemplate } from "../src/scene/meshes/mesh-template";
 import { MeshProgress } from "../src/state/mesh-progress";
 
@@ -73,7 +73,7 @@ describe("COLLADA that XML forbids", () => {
     ["<a><!-- made -- by hand --><b/></a>", "<a><b/></a>"],
     ["<p>1 0 2</p>", "<p>1 0 2</p>"],
   ])("is read as RViz reads it: %s", (text, expected) => {
-    expect(mended(text)).toBe(expected);
+    expect(fixXml(text)).toBe(expected);
   });
 });
 
@@ -120,7 +120,7 @@ describe("vertices that are no numbers", () => {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(new Float32Array([9, 9, 9, 1, 0, 0, NaN, 1, 0, 0, 0, 1]), 3));
     geometry.setIndex([0, 1, 3, 0, 1, 2]);
-    expect(collapseUnreal(geometry)).toEqual({ vertices: 1, triangles: 1, ofTriangles: 2 });
+    expect(collapseNonFinite(geometry)).toEqual({ vertices: 1, triangles: 1, ofTriangles: 2 });
     expect([...(geometry.index?.array ?? [])]).toEqual([0, 1, 3, 0, 0, 0]);
     geometry.computeBoundingBox();
     expect(geometry.boundingBox?.max.toArray()).toEqual([9, 9, 9]);
@@ -181,15 +181,15 @@ describe("the progress of meshes", () => {
     const progress = new MeshProgress();
     const told = (): string[] => progress.loads.map((load) => `${load.name} ${progressText(load)}`);
     const report = progress.begin("arm.stl");
-    report.came(20_000, null);
+    report.received(20_000, null);
     expect(told()).toEqual([]);
     await vi.advanceTimersByTimeAsync(500);
     expect(told()).toEqual(["arm.stl 20 kB"]);
-    report.came(1_200_000, 4_000_000);
+    report.received(1_200_000, 4_000_000);
     expect(told()).toEqual(["arm.stl 1.2 MB of 4.0 MB"]);
-    void report.reads();
+    void report.startReading();
     expect(told()).toEqual(["arm.stl reading"]);
-    report.ended();
+    report.end();
     expect(told()).toEqual([]);
     vi.unstubAllGlobals();
   });
@@ -198,17 +198,17 @@ describe("the progress of meshes", () => {
     vi.stubGlobal("requestAnimationFrame", (call: () => void) => setTimeout(call, 16));
     const progress = new MeshProgress();
     const soon = progress.begin("small.stl");
-    soon.came(100, 100);
-    await soon.reads();
-    soon.ended();
+    soon.received(100, 100);
+    await soon.startReading();
+    soon.end();
     const large = progress.begin("large.stl");
-    large.came(50_000_000, 50_000_000);
+    large.received(50_000_000, 50_000_000);
     let painted = false;
-    void large.reads().then(() => (painted = true));
+    void large.startReading().then(() => (painted = true));
     expect([progress.loads.length, painted]).toEqual([1, false]);
     await vi.advanceTimersByTimeAsync(200);
     expect(painted).toBe(true);
-    large.ended();
+    large.end();
     await vi.advanceTimersByTimeAsync(1000);
     expect(progress.loads).toEqual([]);
     vi.unstubAllGlobals();

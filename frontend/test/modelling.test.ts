@@ -4,8 +4,8 @@ import { hex, entityItems } from "../src/panels/modelling/entity-items";
 import type { ModellingState, PageMessage, WorldEntity } from "../src/protocol";
 import { AngleUnits } from "../src/state/angle-unit";
 import { Modelling } from "../src/state/modelling/modelling";
-import { placementAt, resized, scaledSize, stretch, wallBetween } from "../src/state/modelling/shapes";
-import { Snapping, snapped } from "../src/state/modelling/snapping";
+import { placementAt, resizeChange, scaledSize, stretchFactors, wallBetween } from "../src/state/modelling/shapes";
+import { Snapping, snap } from "../src/state/modelling/snapping";
 import { browserStorage } from "../src/storage";
 import type { TreeItem } from "../src/tree/tree-item";
 
@@ -35,9 +35,9 @@ beforeEach(() => {
 
 describe("snapping", () => {
   it("keeps to multiples of a step, without dust", () => {
-    expect(snapped(0.34, 0.1)).toBe(0.3);
-    expect(snapped(-0.26, 0.25)).toBe(-0.25);
-    expect(snapped(0.1234, 0)).toBe(0.1234);
+    expect(snap(0.34, 0.1)).toBe(0.3);
+    expect(snap(-0.26, 0.25)).toBe(-0.25);
+    expect(snap(0.1234, 0)).toBe(0.1234);
   });
 
   it("is inverted by Ctrl, and remembered", () => {
@@ -73,13 +73,13 @@ describe("shapes", () => {
     expect(scaledSize("sphere", [0.5], [1, 1, 3], 0)).toEqual([1.5]);
     expect(scaledSize("box", [1, 1, 1], [0, 1, 1], 0.25)).toEqual([0.25, 1, 1]);
     expect(scaledSize("box", [0.33, 1, 1], [1, 2, 1], 0.1)).toEqual([0.33, 2, 1]);
-    expect(stretch("cylinder", [0.5, 1], [1, 3])).toEqual([2, 2, 3]);
+    expect(stretchFactors("cylinder", [0.5, 1], [1, 3])).toEqual([2, 2, 3]);
   });
 
   it("keep their foot where it is when they stand upright", () => {
-    expect(resized(entity({ name: "box" }), [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3], pose: [0, 0, 1.5, 0, 0, 0] });
+    expect(resizeChange(entity({ name: "box" }), [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3], pose: [0, 0, 1.5, 0, 0, 0] });
     const tilted = entity({ name: "box", pose: [0, 0, 0.5, 0.1, 0, 0] });
-    expect(resized(tilted, [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3] });
+    expect(resizeChange(tilted, [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3] });
   });
 });
 

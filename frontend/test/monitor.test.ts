@@ -2,11 +2,11 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { LogLine, PageMessage } from "../src/protocol";
 import { bandwidthText, rateText } from "../src/state/monitor/figure-text";
-import { levelOf, lineText, LogState, MOST_LINES } from "../src/state/monitor/log";
+import { levelOf, lineText, LogState, MAX_LINES } from "../src/state/monitor/log";
 import { ParametersState } from "../src/state/monitor/parameters";
 import { parameterText, parameterValues } from "../src/state/monitor/parameter-text";
 import { TeleopState } from "../src/state/monitor/teleop";
-import { motionOfKey, STILL, stick, together } from "../src/state/monitor/teleop-keys";
+import { motionOfKey, STILL, stickDeflection, sumOf } from "../src/state/monitor/teleop-keys";
 import { TopicsState } from "../src/state/monitor/topics";
 
 let sent: PageMessage[];
@@ -35,11 +35,11 @@ describe("topics", () => {
   it("are listed while somebody reads the list", () => {
     const topics = new TopicsState(connection);
     const [one, two] = [{}, {}];
-    topics.list(one, true);
-    topics.list(two, true);
-    topics.list(one, false);
+    topics.watchList(one, true);
+    topics.watchList(two, true);
+    topics.watchList(one, false);
     expect(sent).toEqual([{ type: "watch_topics", listed: true, measured: [], opened: [] }]);
-    topics.list(two, false);
+    topics.watchList(two, false);
     expect(sent.at(-1)).toMatchObject({ listed: false });
   });
 
@@ -131,7 +131,7 @@ describe("the log", () => {
     for (let block = 0; block < 45; block++) {
       receive(Array.from({ length: 1000 }, (_, index) => line({ message: String(block * 1000 + index) })), 1);
     }
-    expect(log.lines.length).toBeLessThanOrEqual(MOST_LINES);
+    expect(log.lines.length).toBeLessThanOrEqual(MAX_LINES);
     expect(log.shown).toHaveLength(log.lines.length);
     expect(log.shown.at(-1)?.message).toBe("44999");
     expect(log.missed).toBe(45);
@@ -156,12 +156,12 @@ describe("driving", () => {
     expect(motionOfKey("ArrowLeft", true)).toEqual({ ...STILL, y: 1 });
     expect(motionOfKey("a", false)).toEqual({ ...STILL, turn: 1 });
     expect(motionOfKey("x", false)).toBeNull();
-    expect(together([motionOfKey("w", false)!, motionOfKey("i", false)!, motionOfKey("a", false)!])).toEqual({ ...STILL, x: 1, turn: 1 });
+    expect(sumOf([motionOfKey("w", false)!, motionOfKey("i", false)!, motionOfKey("a", false)!])).toEqual({ ...STILL, x: 1, turn: 1 });
   });
 
   it("by a stick has play in the middle", () => {
-    expect([0.1, -0.1, 1, -1].map((value) => stick(value))).toEqual([0, 0, 1, -1]);
-    expect(stick(0.5)).toBeGreaterThan(0.4);
+    expect([0.1, -0.1, 1, -1].map((value) => stickDeflection(value))).toEqual([0, 0, 1, -1]);
+    expect(stickDeflection(0.5)).toBeGreaterThan(0.4);
   });
 
   it("repeats what is held and ends with one zero", () => {

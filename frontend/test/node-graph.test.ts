@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { NodeGraph } from "../src/protocol";
-import { layered, type Layout, type Link } from "../src/state/monitor/graph-layout";
+import { layOutLayers, type Layout, type Link } from "../src/state/monitor/graph-layout";
 import { drawnGraph, type GraphOptions } from "../src/state/monitor/graph-model";
 import { isotonic } from "../src/state/monitor/isotonic";
 
@@ -19,7 +19,7 @@ function overlaps({ boxes }: Layout): string[] {
 
 describe("the layout", () => {
   it("goes from left to right", () => {
-    const { boxes, routes } = layered(["a", "b", "c"].map(box), [link("a", "b"), link("b", "c")]);
+    const { boxes, routes } = layOutLayers(["a", "b", "c"].map(box), [link("a", "b"), link("b", "c")]);
     const xs = ["a", "b", "c"].map((id) => boxes.get(id)?.x ?? 0);
     expect(xs[0]).toBeLessThan(xs[1] ?? 0);
     expect(xs[1]).toBeLessThan(xs[2] ?? 0);
@@ -31,7 +31,7 @@ describe("the layout", () => {
   it("keeps boxes apart, and everything inside", () => {
     const ids = Array.from({ length: 40 }, (_, index) => `n${index}`);
     const links = ids.flatMap((id, index) => [link(id, `n${(index * 7 + 3) % 40}`), link(id, `n${(index * 3 + 11) % 40}`)]);
-    const layout = layered(ids.map(box), links);
+    const layout = layOutLayers(ids.map(box), links);
     expect(layout.boxes.size).toBe(40);
     expect(overlaps(layout)).toEqual([]);
     for (const { x, y, width, height } of layout.boxes.values()) {
@@ -43,20 +43,20 @@ describe("the layout", () => {
   });
 
   it("bears cycles, and draws two links between the same boxes apart", () => {
-    const layout = layered(["a", "b"].map(box), [link("a", "b"), link("b", "a")]);
+    const layout = layOutLayers(["a", "b"].map(box), [link("a", "b"), link("b", "a")]);
     const [there, back] = layout.routes;
     expect(there?.points[0]?.[1]).not.toBe(back?.points[0]?.[1]);
     expect(back?.points[0]?.[0]).toBeGreaterThan(back?.points.at(-1)?.[0] ?? 0);
   });
 
   it("untangles what can be untangled", () => {
-    const layout = layered(["a", "b", "x", "y"].map(box), [link("a", "y"), link("b", "x")]);
+    const layout = layOutLayers(["a", "b", "x", "y"].map(box), [link("a", "y"), link("b", "x")]);
     const y = (id: string): number => layout.boxes.get(id)?.y ?? 0;
     expect(Math.sign(y("a") - y("b"))).toBe(Math.sign(y("y") - y("x")));
   });
 
   it("leads long links past the boxes between", () => {
-    const layout = layered(["a", "b", "c"].map(box), [link("a", "b"), link("b", "c"), link("a", "c")]);
+    const layout = layOutLayers(["a", "b", "c"].map(box), [link("a", "b"), link("b", "c"), link("a", "c")]);
     const way = layout.routes.find(({ from, to }) => from === "a" && to === "c");
     expect(way?.points).toHaveLength(3);
     const middle = layout.boxes.get("b");
@@ -65,7 +65,7 @@ describe("the layout", () => {
 
   it("puts boxes without links below, in rows", () => {
     const ids = ["a", "b", ...Array.from({ length: 12 }, (_, index) => `alone${index}`)];
-    const layout = layered(ids.map(box), [link("a", "b")]);
+    const layout = layOutLayers(ids.map(box), [link("a", "b")]);
     expect(overlaps(layout)).toEqual([]);
     const below = ids.slice(2).map((id) => layout.boxes.get(id)?.y ?? 0);
     expect(Math.min(...below)).toBeGreaterThan(layout.boxes.get("a")?.y ?? 0);
@@ -73,14 +73,14 @@ describe("the layout", () => {
   });
 
   it("of nothing is nothing", () => {
-    expect(layered([], [])).toMatchObject({ width: 0, height: 0 });
+    expect(layOutLayers([], [])).toMatchObject({ width: 0, height: 0 });
   });
 
   it("takes no time for hundreds of nodes", () => {
     const ids = Array.from({ length: 300 }, (_, index) => `n${index}`);
     const links = ids.slice(1).map((id, index) => link(`n${Math.floor(index / 3)}`, id));
     const started = performance.now();
-    layered(ids.map(box), links);
+    layOutLayers(ids.map(box), links);
     expect(performance.now() - started).toBeLessThan(1000);
   });
 });

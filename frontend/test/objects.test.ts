@@ -18,7 +18,7 @@ import { AxesBatch } from "../src/scene/objects/axes-batch";
 import { CopyBatch } from "../src/scene/objects/copy-batch";
 import { CovarianceBatch, type CovarianceStyle } from "../src/scene/objects/covariance-batch";
 import { principalAxes } from "../src/scene/objects/eigen";
-import { ballGeometry, coneGeometry, cubeGeometry, rodGeometry } from "../src/scene/objects/geometries";
+import { sphereGeometry, coneGeometry, cubeGeometry, rodGeometry } from "../src/scene/objects/geometries";
 import { ribbons, segmentsOf, stripsOf } from "../src/scene/objects/ribbons";
 
 interface Boxed {
@@ -42,7 +42,7 @@ describe("geometries", () => {
     expect(box(rodGeometry(16)).min.toArray().map(Math.fround)).toEqual([0, -0.5, -0.5]);
     expect(box(rodGeometry(16)).max.toArray().map(Math.fround)).toEqual([1, 0.5, 0.5]);
     expect(box(coneGeometry(16)).max.x).toBeCloseTo(1);
-    expect(box(ballGeometry(16)).getSize(new Vector3()).z).toBeCloseTo(1);
+    expect(box(sphereGeometry(16)).getSize(new Vector3()).z).toBeCloseTo(1);
     expect(box(cubeGeometry()).getSize(new Vector3()).toArray()).toEqual([1, 1, 1]);
   });
 });

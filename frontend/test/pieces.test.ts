@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { isPiece, Pieces } from "../src/connection/pieces";
+import { isPiece, FrameAssembler } from "../src/connection/pieces";
 
 function piece(number: number, offset: number, length: number, bytes: number[]): ArrayBuffer {
   const { buffer } = new Uint8Array([...new Uint8Array(new Uint32Array([4, number, offset, length]).buffer), ...bytes]);
@@ -8,18 +8,18 @@ function piece(number: number, offset: number, length: number, bytes: number[]):
 
 describe("pieces", () => {
   it("become the frame that was cut", () => {
-    const pieces = new Pieces();
-    expect(pieces.take(piece(1, 0, 5, [1, 2]))).toBeNull();
-    expect(pieces.take(piece(1, 2, 5, [3, 4]))).toBeNull();
-    expect(pieces.take(piece(1, 4, 5, [5]))).toEqual(new Uint8Array([1, 2, 3, 4, 5]).buffer);
+    const pieces = new FrameAssembler();
+    expect(pieces.add(piece(1, 0, 5, [1, 2]))).toBeNull();
+    expect(pieces.add(piece(1, 2, 5, [3, 4]))).toBeNull();
+    expect(pieces.add(piece(1, 4, 5, [5]))).toEqual(new Uint8Array([1, 2, 3, 4, 5]).buffer);
   });
 
   it("of a frame that was given up are forgotten", () => {
-    const pieces = new Pieces();
-    pieces.take(piece(1, 0, 4, [1, 2]));
-    expect(pieces.take(piece(2, 0, 2, [7]))).toBeNull();
-    expect(pieces.take(piece(1, 2, 4, [3, 4]))).toBeNull();
-    expect(pieces.take(piece(2, 1, 2, [8]))).toEqual(new Uint8Array([7, 8]).buffer);
+    const pieces = new FrameAssembler();
+    pieces.add(piece(1, 0, 4, [1, 2]));
+    expect(pieces.add(piece(2, 0, 2, [7]))).toBeNull();
+    expect(pieces.add(piece(1, 2, 4, [3, 4]))).toBeNull();
+    expect(pieces.add(piece(2, 1, 2, [8]))).toEqual(new Uint8Array([7, 8]).buffer);
   });
 
   it("are told from other frames", () => {

@@ -25,7 +25,7 @@ beforeEach(() => {
   vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
   modelling = new Modelling(connection, browserStorage());
   const rayAt = (x: number, y: number): Raycaster => new Raycaster(new Vector3(x, y, 5), new Vector3(0, 0, -1));
-  const stage = { aids: new Group(), world: null, picker: { rayAt }, loop: { invalidate: () => undefined } };
+  const stage = { overlays: new Group(), world: null, picker: { rayAt }, loop: { invalidate: () => undefined } };
   placer = new Placer(stage as unknown as Stage, modelling);
 });
 

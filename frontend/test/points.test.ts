@@ -1,10 +1,10 @@
 import { expect, test } from "vitest";
-import { described } from "../src/scene/displays/cloud-description";
+import { describePoint } from "../src/scene/displays/cloud-description";
 import { mapPalette } from "../src/scene/displays/map-palette";
 import { nearestPoint } from "../src/scene/objects/nearest-point";
 import { cameraInImageFrame, imageZoom, projection } from "../src/scene/images/camera-projection";
-import { pixels } from "../src/scene/images/image-canvas";
-import { seenThrough } from "../src/scene/images/seen-through";
+import { rgbaOf } from "../src/scene/images/image-canvas";
+import { isShownInCamera } from "../src/scene/images/seen-through";
 import { DisplayState } from "../src/state/displays";
 import { PropertyNode, PropertyRows } from "../src/state/properties";
 import { Vector3 } from "three";
@@ -27,7 +27,7 @@ test("a pointer covers more the farther away it points", () => {
 
 test("a point is described as RViz does", () => {
   const fields = { intensity: 0.5, rgb: "#102030ff", bad: "nan" };
-  const { name, children } = described(7, "", new Float32Array([1, 2, 3.5]), fields);
+  const { name, children } = describePoint(7, "", new Float32Array([1, 2, 3.5]), fields);
   expect(name).toBe("Point 7");
   expect(children?.map((each) => [each.name, each.value])).toEqual([
     ["Position", "1; 2; 3.5"],
@@ -36,7 +36,7 @@ test("a point is described as RViz does", () => {
     ["alpha", "1"],
     ["5: bad", "nan"],
   ]);
-  expect(described(0, "12", new Float32Array(3), null).name).toBe("Point 0 [cloud 12]");
+  expect(describePoint(0, "12", new Float32Array(3), null).name).toBe("Point 0 [cloud 12]");
 });
 
 function color(palette: Uint8Array, value: number): number[] {
@@ -72,7 +72,7 @@ test("a threshold makes cells free or occupied", () => {
 test("pixels of every kind become red, green, blue and alpha", () => {
   const frame = { width: 1, height: 1, columns: 1, rows: 1, camera: null, quality: 0, kind: "image_frame" } as const;
   const of = (encoding: "grey" | "rgb" | "rgba", data: number[]): number[] => [
-    ...pixels({ ...frame, encoding, data: new Uint8Array(data) }),
+    ...rgbaOf({ ...frame, encoding, data: new Uint8Array(data) }),
   ];
   expect(of("grey", [7])).toEqual([7, 7, 7, 255]);
   expect(of("rgb", [1, 2, 3])).toEqual([1, 2, 3, 255]);
@@ -124,8 +124,8 @@ test("a display is seen through a camera when its box and those around it are on
   const group = new DisplayState(display({ id: "1", cls: "rviz_common/Group", name: "Sensors" }));
   const cloud = new DisplayState(display({ id: "2", name: "Cloud" }));
   cloud.group = group;
-  expect(seenThrough(rows(true, true), cloud)).toBe(true);
-  expect(seenThrough(rows(false, true), cloud)).toBe(false);
-  expect(seenThrough(rows(true, false), cloud)).toBe(false);
-  expect(seenThrough(new PropertyRows([]), cloud)).toBe(true);
+  expect(isShownInCamera(rows(true, true), cloud)).toBe(true);
+  expect(isShownInCamera(rows(false, true), cloud)).toBe(false);
+  expect(isShownInCamera(rows(true, false), cloud)).toBe(false);
+  expect(isShownInCamera(new PropertyRows([]), cloud)).toBe(true);
 });

@@ -1,6 +1,6 @@
 import { describe, expect, it, vi } from "vitest";
 import { socketUrl } from "../src/connection/connection";
-import { addressOf, recordingIn } from "../src/connection/recording-address";
+import { withRecording, recordingIn } from "../src/connection/recording-address";
 import { recordingAmong } from "../src/shell/recording-files";
 
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en, language: "en" }));
@@ -30,9 +30,9 @@ describe("what is dropped", () => {
 
 describe("the page of a recording", () => {
   it("is named by its address, and its socket is", () => {
-    const address = addressOf("http://localhost:7448/?displays=own", "abc");
+    const address = withRecording("http://localhost:7448/?displays=own", "abc");
     expect(recordingIn(address)).toBe("abc");
     expect(socketUrl(address)).toBe("ws://localhost:7448/ws?recording=abc");
-    expect(addressOf(address, null)).toBe("http://localhost:7448/?displays=own");
+    expect(withRecording(address, null)).toBe("http://localhost:7448/?displays=own");
   });
 });

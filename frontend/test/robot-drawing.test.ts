@@ -1,7 +1,7 @@
 import { Box3, PerspectiveCamera, Raycaster, Vector3 } from "three";
 import { describe, expect, it, vi } from "vitest";
 import type { LinkScene, Shape } from "../src/protocol";
-import { TOUCHED } from "../src/scene/layers";
+import { PICKABLE } from "../src/scene/layers";
 import { MeshLibrary } from "../src/scene/meshes/mesh-library";
 import { framePose } from "../src/scene/pose";
 import { RobotDrawing } from "../src/scene/robot/robot-drawing";
@@ -52,8 +52,8 @@ function robot(links: LinkScene[]): { drawing: RobotDrawing; frames: FrameStore 
 function draw({ drawing, frames }: ReturnType<typeof robot>, rows = new PropertyRows([])): Record<string, unknown> {
   drawing.style(rows, false);
   drawing.place((each, matrix) => framePose(frames, frames.row(each.frame), matrix));
-  drawing.look(from(5));
-  return drawing.tell() as Record<string, unknown>;
+  drawing.chooseDetail(from(5));
+  return drawing.inspect() as Record<string, unknown>;
 }
 
 /** A camera that looks at the row from so many metres in front of it. */
@@ -88,8 +88,8 @@ describe("RobotDrawing", () => {
   it("draws spheres with few corners while they look small", () => {
     const row = robot([link("balls", shape({ kind: "sphere", size: [0.3] }), shape({ kind: "sphere", size: [3] }))]);
     const small = (distance: number): unknown => {
-      row.drawing.look(from(distance));
-      return (row.drawing.tell() as Record<string, unknown>)["smallSpheres"];
+      row.drawing.chooseDetail(from(distance));
+      return (row.drawing.inspect() as Record<string, unknown>)["smallSpheres"];
     };
     draw(row);
     expect([2, 20, 90, 20, 0.1].map(small)).toEqual([0, 1, 2, 1, 0]);
@@ -119,20 +119,20 @@ describe("RobotDrawing", () => {
 
   it("is in place with a link that has visuals, or with any where none has or none is to be seen", () => {
     const bare = robot([link("base"), link("tip")]);
-    expect(bare.drawing.isInPlace).toBe(false);
+    expect(bare.drawing.hasPose).toBe(false);
     draw(bare);
-    expect(bare.drawing.isInPlace).toBe(true);
+    expect(bare.drawing.hasPose).toBe(true);
 
     const hidden = robot(ROW);
     draw(hidden, new PropertyRows([new PropertyNode(property({ id: "v", name: "Visual Enabled", value: false }))]));
-    expect(hidden.drawing.isInPlace).toBe(true);
+    expect(hidden.drawing.hasPose).toBe(true);
 
     const { drawing, frames } = robot([link("footprint"), ...ROW]);
     frames.setTable({ type: "frame_table", revision: 2, names: ["footprint"], parents: [-1] });
     frames.setTransforms({ revision: 2, stamp: 0, poses: new Float32Array([0, 0, 0, 0, 0, 0, 1]), ages: new Float32Array(1) });
     draw({ drawing, frames });
     expect(drawing.progress.posed).toBe(1);
-    expect(drawing.isInPlace).toBe(false);
+    expect(drawing.hasPose).toBe(false);
   });
 
   it("lets rays meet what is drawn together, and cameras see it once", () => {
@@ -141,7 +141,7 @@ describe("RobotDrawing", () => {
     row.drawing.root.updateMatrixWorld(true);
     const ray = new Raycaster(new Vector3(5, 0, 0), new Vector3(-1, 0, 0));
     expect(row.drawing.pick(ray)).toBeNull();
-    ray.layers.enable(TOUCHED);
+    ray.layers.enable(PICKABLE);
     const hit = row.drawing.pick(ray);
     expect(hit?.key).toBe("box");
     expect(hit?.point.x).toBeCloseTo(1.1);

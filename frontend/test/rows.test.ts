@@ -1,9 +1,9 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import { detailRows } from "../src/panels/displays/detail-rows";
-import { displayRows, linkOfKey, linkPath } from "../src/panels/displays/robot-rows";
+import { displayRows, linkOfKey, linkRowPath } from "../src/panels/displays/robot-rows";
 import type { JointScene, Property, ServerMessage } from "../src/protocol";
-import { composed, relative } from "../src/state/pose-numbers";
+import { compose, relativeTo } from "../src/state/pose-numbers";
 import { Session } from "../src/state/session";
 import { formatPoint } from "../src/tree/numbers";
 import type { TreeItem } from "../src/tree/tree-item";
@@ -155,14 +155,14 @@ describe("a robot's rows", () => {
   it("are found by their link", () => {
     show("Tree of links and joints");
     const [model] = session.displays.displays;
-    expect(linkPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/base", "d0/Joints/elbow", "d0/Links/arm"]);
+    expect(linkRowPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/base", "d0/Joints/elbow", "d0/Links/arm"]);
     expect(linkOfKey(session, "d0/Links/arm")).toEqual({ display: model, link: "arm" });
     expect(linkOfKey(session, "d0/Links/All Links Enabled")).toBeNull();
     show("Joints in Alphabetic Order");
-    expect(linkPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Joints/elbow"]);
-    expect(linkPath(model!, session, "base")).toBeNull();
+    expect(linkRowPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Joints/elbow"]);
+    expect(linkRowPath(model!, session, "base")).toBeNull();
     show("Links in Alphabetic Order");
-    expect(linkPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/arm"]);
+    expect(linkRowPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/arm"]);
   });
 });
 
@@ -246,7 +246,7 @@ describe("poses", () => {
   it("put together and taken apart are the same", () => {
     const a = [1, 2, 3, 0, HALF, 0, HALF] as const;
     const b = [-1, 0.5, 2, HALF, 0, 0, HALF] as const;
-    relative(a, composed(a, b)).forEach((part, i) => expect(part).toBeCloseTo(b[i]!));
+    relativeTo(a, compose(a, b)).forEach((part, i) => expect(part).toBeCloseTo(b[i]!));
   });
 });
 

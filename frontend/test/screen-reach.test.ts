@@ -1,6 +1,6 @@
 import { OrthographicCamera, PerspectiveCamera } from "three";
 import { expect, test } from "vitest";
-import { reachOf } from "../src/scene/screen-reach";
+import { extentOf } from "../src/scene/screen-reach";
 
 const CANVAS = { width: 800, height: 400 };
 const BOX = { min: [-1, -1, -1], max: [1, 1, 1] } as const;
@@ -14,37 +14,37 @@ function from(distance: number): PerspectiveCamera {
 
 test("the nearest corners reach farthest", () => {
   // The front is 1 m off, where the canvas is 4 m wide.
-  expect(reachOf(BOX, from(2), CANVAS).right).toBeCloseTo(600);
-  expect(reachOf(BOX, from(5), CANVAS).right).toBeCloseTo(450);
+  expect(extentOf(BOX, from(2), CANVAS).right).toBeCloseTo(600);
+  expect(extentOf(BOX, from(5), CANVAS).right).toBeCloseTo(450);
 });
 
 test("it is told from where a box is seen", () => {
-  expect(reachOf(BOX, from(2), CANVAS).left).toBeCloseTo(200);
-  expect(reachOf(BOX, from(0.5), CANVAS).left).toBe(-Infinity);
+  expect(extentOf(BOX, from(2), CANVAS).left).toBeCloseTo(200);
+  expect(extentOf(BOX, from(0.5), CANVAS).left).toBe(-Infinity);
 });
 
 test("what is shifted on the canvas reaches less far", () => {
   const camera = from(2);
   camera.setViewOffset(800, 400, 100, 0, 800, 400);
-  expect(reachOf(BOX, camera, CANVAS).right).toBeCloseTo(500);
+  expect(extentOf(BOX, camera, CANVAS).right).toBeCloseTo(500);
 });
 
 test("what is behind the eye, too, is everywhere", () => {
-  expect(reachOf(BOX, from(0.5), CANVAS).right).toBe(Infinity);
+  expect(extentOf(BOX, from(0.5), CANVAS).right).toBe(Infinity);
 });
 
 test("without perspective only the box counts", () => {
   const camera = new OrthographicCamera(-2, 2, 1, -1, 0, 100);
   camera.position.z = 50;
   camera.updateMatrixWorld();
-  expect(reachOf(BOX, camera, CANVAS).right).toBeCloseTo(600);
+  expect(extentOf(BOX, camera, CANVAS).right).toBeCloseTo(600);
 });
 
 test("it is told between which heights something is seen", () => {
-  const { top, bottom } = reachOf(BOX, from(2), CANVAS);
+  const { top, bottom } = extentOf(BOX, from(2), CANVAS);
   expect([top, bottom]).toEqual([expect.closeTo(0), expect.closeTo(400)]);
   const camera = from(5);
-  const above = reachOf(BOX, camera, CANVAS).top;
+  const above = extentOf(BOX, camera, CANVAS).top;
   camera.setViewOffset(800, 400, 0, -50, 800, 400);
-  expect(reachOf(BOX, camera, CANVAS).top).toBeCloseTo(above + 50);
+  expect(extentOf(BOX, camera, CANVAS).top).toBeCloseTo(above + 50);
 });

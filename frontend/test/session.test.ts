@@ -110,14 +110,14 @@ describe("the view", () => {
       receive(hello("first"));
       receive(view(1));
       session.view.update({ Yaw: 2 });
-      session.view.measured(box, 0);
+      session.view.reportSize(box, 0);
       expect(sizes()).toHaveLength(0);
       receive(hello("second"));
       receive(view(1));
       expect(session.view.values["Yaw"]).toBe(2);
       expect(session.view.awaitsSize).toBe(true);
-      session.view.measured(box, 0);
-      session.view.measured(box, 0);
+      session.view.reportSize(box, 0);
+      session.view.reportSize(box, 0);
       expect(sizes()).toHaveLength(1);
     });
 
@@ -159,12 +159,12 @@ describe("the view", () => {
   it("that nobody chose has the robot measured once, for each configuration", () => {
     const measured = (): unknown[] => sent.filter(({ type }) => type === "robot_measured");
     receive(view(1, 1, true));
-    session.view.measured({ min: [0, 0, 0], max: [2, 3, 6] }, -0.5);
-    session.view.measured({ min: [0, 0, 0], max: [4, 6, 12] }, 0);
+    session.view.reportSize({ min: [0, 0, 0], max: [2, 3, 6] }, -0.5);
+    session.view.reportSize({ min: [0, 0, 0], max: [4, 6, 12] }, 0);
     expect(measured()).toEqual([{ type: "robot_measured", diagonal: 7, ground: -0.5 }]);
     receive(view(1, 2, true));
     session.view.update({ Yaw: 2 });
-    session.view.measured({ min: [0, 0, 0], max: [2, 3, 6] }, 0);
+    session.view.reportSize({ min: [0, 0, 0], max: [2, 3, 6] }, 0);
     expect(measured()).toHaveLength(1);
   });
 

@@ -8,7 +8,7 @@ import { SlowLine } from "../src/state/slow-line";
 vi.mock("../src/strings", () => ({ strings: {} }));
 
 function store() {
-  return { received: new Signal<DisplayData>(), forgotten: new Signal<{ display: string; key: string | null }>() };
+  return { received: new Signal<DisplayData>(), removed: new Signal<{ display: string; key: string | null }>() };
 }
 
 function cloud(step: number): DisplayData {
@@ -36,7 +36,7 @@ it("forgets what is drawn no more", () => {
   const line = new SlowLine(data as unknown as DisplayDataStore, () => 0);
   data.received.emit(cloud(2));
   expect(line.reduced[0]?.rate).toBeNull();
-  data.forgotten.emit({ display: "cloud", key: null });
+  data.removed.emit({ display: "cloud", key: null });
   expect(line.reduced).toEqual([]);
 });
 

@@ -1,7 +1,7 @@
 import { BoxGeometry, BufferGeometry, Matrix4, Mesh, MeshLambertMaterial, Object3D, PerspectiveCamera, SphereGeometry } from "three";
 import { MeshoptSimplifier } from "meshoptimizer/simplifier";
 import { beforeAll, describe, expect, it } from "vitest";
-import { TOUCHED } from "../src/scene/layers";
+import { PICKABLE } from "../src/scene/layers";
 import { standIn, type StandIn, type Triangles } from "../src/scene/meshes/stand-in";
 import type { StandInAnswer, StandInRequest } from "../src/scene/meshes/stand-in-worker";
 import { StandIns, type StandInWorker } from "../src/scene/meshes/stand-ins";
@@ -71,9 +71,9 @@ describe("a stand-in", () => {
   });
 
   it("is nothing for a mesh without an area", () => {
-    const { levels, ball } = made({ positions: new Float32Array(9), normals: new Float32Array(9), index: null });
+    const { levels, sphere } = made({ positions: new Float32Array(9), normals: new Float32Array(9), index: null });
     expect(levels).toEqual([{ error: 0, index: new Uint32Array(0) }]);
-    expect(ball[3]).toBe(0);
+    expect(sphere[3]).toBe(0);
   });
 });
 
@@ -125,7 +125,7 @@ describe("moving meshes", () => {
     expect(moving.drawn.pieces).toBe(2);
     expect(moving.drawn.triangles).toBeLessThan(48 * 32);
     expect(mesh.layers.isEnabled(0)).toBe(false);
-    expect(mesh.layers.isEnabled(TOUCHED)).toBe(true);
+    expect(mesh.layers.isEnabled(PICKABLE)).toBe(true);
     expect(parent.children).toHaveLength(1);
     moving.end();
     expect(mesh.layers.isEnabled(0)).toBe(true);

@@ -14,7 +14,7 @@ describe("the studio", () => {
     for (const size of [0.01, 1, 100]) {
       const studio = new StudioLight();
       const { lamp, ground } = parts(studio);
-      studio.shineOn(new Box3(new Vector3(0, 0, 0), new Vector3(size, size, size)), -size);
+      studio.update(new Box3(new Vector3(0, 0, 0), new Vector3(size, size, size)), -size);
       expect(ground.position.z).toBe(-size);
       expect(ground.visible).toBe(true);
       const { near, far, right } = lamp.shadow.camera;
@@ -34,7 +34,7 @@ describe("the studio", () => {
 
   it("has no ground while nothing stands in it", () => {
     const studio = new StudioLight();
-    studio.shineOn(new Box3(), 0);
+    studio.update(new Box3(), 0);
     expect(parts(studio).ground.visible).toBe(false);
   });
 });

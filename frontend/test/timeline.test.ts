@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { agoText, clockText, densities, extentText, momentText, passedText } from "../src/panels/timeline/timeline-text";
+import { agoText, clockText, densities, extentText, momentText, elapsedText } from "../src/panels/timeline/timeline-text";
 import type { PageMessage, Playhead } from "../src/protocol";
 import { TimelineState } from "../src/state/timeline";
 
@@ -76,9 +76,9 @@ describe("the timeline", () => {
 
 describe("what the timeline says", () => {
   it("times as minutes and seconds", () => {
-    expect(passedText(7.256, 90)).toBe("0:07.256 / 1:30");
-    expect(passedText(59.9999, 3725)).toBe("1:00.000 / 1:02:05");
-    expect(passedText(1, 2.5)).toBe("0:01.000 / 0:02.500");
+    expect(elapsedText(7.256, 90)).toBe("0:07.256 / 1:30");
+    expect(elapsedText(59.9999, 3725)).toBe("1:00.000 / 1:02:05");
+    expect(elapsedText(1, 2.5)).toBe("0:01.000 / 0:02.500");
     expect(clockText(1_700_000_000.25)).toContain(".250 (1700000000.250)");
   });
 

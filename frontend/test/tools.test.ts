@@ -100,7 +100,7 @@ describe("the selection", () => {
     expect(changes).toHaveBeenCalledTimes(2);
     selection.pick([{ display: "d0", key: "7" }], "remove");
     expect(selection.items).toEqual([{ display: "d1", key: "tip" }]);
-    selection.drop(() => false);
+    selection.retain(() => false);
     expect(selection.selected).toBeNull();
   });
 });

@@ -5,7 +5,7 @@ import type { PageMessage } from "../src/protocol";
 import { GapFinder } from "../src/state/voice/gaps";
 import { meterPart } from "../src/state/voice/level";
 import { Microphone, type OpenCapture } from "../src/state/voice/microphone";
-import { pcm, Resampler } from "../src/state/voice/resampler";
+import { toPcm, Resampler } from "../src/state/voice/resampler";
 import { soundFrame, VoiceState } from "../src/state/voice/voice";
 import { WordsState } from "../src/state/voice/words";
 
@@ -18,7 +18,7 @@ describe("resampling", () => {
   const through = (samples: Float32Array, rate: number): Float32Array => {
     const resampler = new Resampler(rate, 16_000);
     const parts: number[] = [];
-    for (let at = 0; at < samples.length; at += 128) parts.push(...resampler.take(samples.subarray(at, at + 128)));
+    for (let at = 0; at < samples.length; at += 128) parts.push(...resampler.add(samples.subarray(at, at + 128)));
     return Float32Array.from(parts);
   };
 
@@ -36,7 +36,7 @@ describe("resampling", () => {
   });
 
   it("samples are of 16 bits, and louder ones are cut", () => {
-    expect([...pcm(Float32Array.from([0, 1, -1, 2, 0.5]))]).toEqual([0, 32767, -32767, 32767, 16384]);
+    expect([...toPcm(Float32Array.from([0, 1, -1, 2, 0.5]))]).toEqual([0, 32767, -32767, 32767, 16384]);
   });
 });
 
@@ -57,7 +57,7 @@ describe("gaps", () => {
     const finder = new GapFinder(48_000);
     for (let number = 0; number < 750; number++) {
       const { samples = loud, lateMs = 0 } = change(number);
-      finder.take(samples, 5000 + (number * QUANTUM) / 48 + lateMs);
+      finder.add(samples, 5000 + (number * QUANTUM) / 48 + lateMs);
     }
     return Math.round(1000 * finder.takeLost());
   };
@@ -83,7 +83,7 @@ describe("gaps", () => {
 
   it("what was told is not told again", () => {
     const finder = new GapFinder(48_000);
-    for (const samples of [loud, silent, loud]) finder.take(samples, 0);
+    for (const samples of [loud, silent, loud]) finder.add(samples, 0);
     expect(finder.takeLost()).toBeGreaterThan(0);
     expect(finder.takeLost()).toBe(0);
   });
@@ -171,7 +171,7 @@ describe("talking", () => {
     expect(closed).toBe(1);
     voice.press();
     await soon();
-    voice.letGo();
+    voice.releaseMicrophone();
     await soon();
     expect(closed).toBe(2);
     expect(modes().at(-1)).toBe("off");

@@ -2,14 +2,14 @@ import { Box3, BoxGeometry, Matrix4, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import { freePlace } from "../src/scene/displays/free-place";
 import type { MeshPart } from "../src/scene/meshes/mesh-template";
-import { extrusion, ground, submesh } from "../src/scene/objects/world-geometries";
+import { extrudedPolygons, heightmapGeometry, submesh } from "../src/scene/objects/world-geometries";
 
 const SQUARE = [0, 0, 4, 0, 4, 4, 0, 4];
 const HOLE = [1, 1, 3, 1, 3, 3, 1, 3];
 
 /** Area of what faces up, m2. */
 function top(outlines: number[][]): number {
-  const geometry = extrusion(outlines, 2);
+  const geometry = extrudedPolygons(outlines, 2);
   const points = geometry.getAttribute("position");
   let sum = 0;
   for (let i = 0; i < points.count; i += 3) {
@@ -56,7 +56,7 @@ describe("submesh", () => {
 
 describe("ground", () => {
   it("has the heights in their places, the first row at the least y", () => {
-    const geometry = ground(new Float32Array([0, 0, 1, 1]), 2, [10, 20, 3, 1, 2, 0.5, 5]);
+    const geometry = heightmapGeometry(new Float32Array([0, 0, 1, 1]), 2, [10, 20, 3, 1, 2, 0.5, 5]);
     geometry.computeBoundingBox();
     const box = geometry.boundingBox ?? new Box3();
     expect([...box.min.toArray(), ...box.max.toArray()]).toEqual([-4, -8, 0.5, 6, 12, 3.5]);

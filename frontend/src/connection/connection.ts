@@ -2,7 +2,7 @@ import { PROTOCOL_VERSION, type PageMessage, type ServerMessage } from "../proto
 import { Signal } from "../signal";
 import { browserStorage } from "../storage";
 import { unpackData, type DisplayData } from "./data";
-import { isPiece, Pieces } from "./pieces";
+import { isPiece, FrameAssembler } from "./pieces";
 import { askForProof } from "./proof";
 import { recordingIn } from "./recording-address";
 import { unpackSamples, type SeriesSamples } from "./samples";
@@ -35,14 +35,14 @@ export class Connection {
   readonly data = new Signal<DisplayData>();
   readonly samples = new Signal<SeriesSamples[]>();
   readonly stateChanged = new Signal<ConnectionState>();
-  private readonly pieces = new Pieces();
+  private readonly pieces = new FrameAssembler();
   private socket: WebSocket | null = null;
   private retryMs = FIRST_RETRY_MS;
   private receivedCount = 0;
-  private shown: string | null = null;
+  private shownToken: string | null = null;
   /** The token that the server accepted from this page. */
-  private accepted: string | null = null;
-  private attempts = 0;
+  private acceptedToken: string | null = null;
+  private attemptCount = 0;
   private retryTimer: ReturnType<typeof setTimeout> | undefined;
   private current: ConnectionState = "connecting";
 
@@ -75,35 +75,35 @@ export class Connection {
 
   open(): void {
     clearTimeout(this.retryTimer);
-    this.shown = this.tokens?.current ?? null;
-    if (this.tokens && this.shown === null) {
+    this.shownToken = this.tokens?.current ?? null;
+    if (this.tokens && this.shownToken === null) {
       // Another page of this browser may be let in.
-      this.become("refused");
+      this.setState("refused");
       this.retryLater();
       return;
     }
-    this.attempts += 1;
-    if (this.shown !== null && this.accepted !== null) void this.comeBack(this.shown, this.attempts);
+    this.attemptCount += 1;
+    if (this.shownToken !== null && this.acceptedToken !== null) void this.reconnect(this.shownToken, this.attemptCount);
     else this.connect();
   }
 
   /** Retries immediately instead of waiting for the timer. */
-  hurry(): void {
-    if (this.socket === null && this.attempts > 0 && this.current !== "connected" && this.current !== "outdated") this.open();
+  retryNow(): void {
+    if (this.socket === null && this.attemptCount > 0 && this.current !== "connected" && this.current !== "outdated") this.open();
   }
 
   /**
    * Sends the token only to a program that proves it knows the token already; another program may listen at the address
    * now.
    */
-  private async comeBack(token: string, attempt: number): Promise<void> {
+  private async reconnect(token: string, attempt: number): Promise<void> {
     const proof = await askForProof(this.url, token);
-    if (attempt !== this.attempts) return;
+    if (attempt !== this.attemptCount) return;
     if (proof === "known") {
       this.connect();
       return;
     }
-    if (proof === "unknown" && this.tokens?.refused() !== true) this.become("refused");
+    if (proof === "unknown" && this.tokens?.refuse() !== true) this.setState("refused");
     this.retryLater();
   }
 
@@ -111,16 +111,16 @@ export class Connection {
     const socket = new WebSocket(this.address.href);
     socket.binaryType = "arraybuffer";
     socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.receive(event.data);
-    socket.onclose = (event) => this.lost(event.code);
+    socket.onclose = (event) => this.onClosed(event.code);
     this.socket = socket;
     this.receivedCount = 0;
   }
 
   /** Connects with another token immediately. */
-  show(token: string): void {
-    this.tokens?.take(token);
-    this.accepted = null;
-    this.become("connecting");
+  connectWith(token: string): void {
+    this.tokens?.use(token);
+    this.acceptedToken = null;
+    this.setState("connecting");
     this.open();
   }
 
@@ -146,21 +146,21 @@ export class Connection {
     const message = JSON.parse(data) as ServerMessage;
     if (message.type === "hello") {
       if (message.protocol !== PROTOCOL_VERSION) {
-        this.outdated();
+        this.reloadOutdated();
         return;
       }
       browserStorage("sessionStorage").removeItem(RELOADED_KEY);
-      this.accepted = this.shown;
-      if (this.shown !== null) this.tokens?.accepted(this.shown);
+      this.acceptedToken = this.shownToken;
+      if (this.shownToken !== null) this.tokens?.accept(this.shownToken);
       this.retryMs = FIRST_RETRY_MS;
-      this.become("connected");
+      this.setState("connected");
     }
     this.message.emit(message);
   }
 
   protected receiveBytes(bytes: ArrayBuffer): void {
     if (isPiece(bytes)) {
-      const whole = this.pieces.take(bytes);
+      const whole = this.pieces.add(bytes);
       if (whole) this.receiveBytes(whole);
       return;
     }
@@ -172,12 +172,12 @@ export class Connection {
     if (samples) this.samples.emit(samples);
   }
 
-  private lost(code: number): void {
+  private onClosed(code: number): void {
     this.socket = null;
     if (this.current === "outdated") return;
-    if (code === GOING_AWAY) this.become("ended");
-    else if (this.current === "connected") this.become("reconnecting");
-    else if (this.receivedCount === 0) void this.askWhy();
+    if (code === GOING_AWAY) this.setState("ended");
+    else if (this.current === "connected") this.setState("reconnecting");
+    else if (this.receivedCount === 0) void this.findRefusal();
     this.retryLater();
   }
 
@@ -189,27 +189,27 @@ export class Connection {
   /** The address of the socket, with the token. */
   private get address(): URL {
     const url = new URL(this.url);
-    if (this.shown !== null) url.searchParams.set("token", this.shown);
+    if (this.shownToken !== null) url.searchParams.set("token", this.shownToken);
     return url;
   }
 
   /** Finds out why the socket did not open: its close event gives no reason, but an ordinary request does. */
-  private async askWhy(): Promise<void> {
+  private async findRefusal(): Promise<void> {
     const url = this.address;
     url.protocol = url.protocol === "wss:" ? "https:" : "http:";
     try {
       const { status } = await fetch(url, { cache: "no-store" });
       if (status !== UNAUTHORIZED || this.socket?.readyState === WebSocket.OPEN) return;
-      if (this.tokens?.refused() !== true) this.become("refused");
+      if (this.tokens?.refuse() !== true) this.setState("refused");
     } catch {
       // No server answers.
     }
   }
 
   /** Reloads the page once: the server now has another version, and serves the page that belongs to it. */
-  private outdated(): void {
+  private reloadOutdated(): void {
     const socket = this.socket;
-    this.become("outdated");
+    this.setState("outdated");
     socket?.close();
     const tab = browserStorage("sessionStorage");
     if (tab.getItem(RELOADED_KEY) !== null) return;
@@ -217,7 +217,7 @@ export class Connection {
     location.reload();
   }
 
-  protected become(state: ConnectionState): void {
+  protected setState(state: ConnectionState): void {
     if (state === this.current) return;
     this.current = state;
     this.stateChanged.emit(state);

@@ -27,7 +27,7 @@ export function unpackData(buffer: ArrayBuffer): DisplayData | null {
   const length = header.getUint32(4, true);
   const text = new TextDecoder().decode(new Uint8Array(buffer, HEADER_BYTES, length));
   const start = Math.ceil((HEADER_BYTES + length) / ALIGNMENT) * ALIGNMENT;
-  return restored(JSON.parse(text), (reference) => view(buffer, start, reference)) as DisplayData;
+  return restoreArrays(JSON.parse(text), (reference) => view(buffer, start, reference)) as DisplayData;
 }
 
 type Reference = readonly ["f4" | "u1", number, number];
@@ -38,23 +38,23 @@ type Restore = (reference: Reference) => ArrayBufferView;
  * Replaces references by the arrays that they refer to. This is faster than a reviver of `JSON.parse`, which would
  * visit every number of the thousands of markers that a frame may hold.
  */
-function restored(value: unknown, restore: Restore): unknown {
+function restoreArrays(value: unknown, restore: Restore): unknown {
   if (typeof value !== "object" || value === null) return value;
   if (Array.isArray(value)) {
     // Lists contain items of one kind, so the first item tells for all.
-    if (typeof value[0] === "object") value.forEach((each, index) => (value[index] = restored(each, restore)));
+    if (typeof value[0] === "object") value.forEach((each, index) => (value[index] = restoreArrays(each, restore)));
     return value;
   }
-  if (isArray(value)) return restore(value.$);
+  if (isReference(value)) return restore(value.$);
   const object = value as Record<string, unknown>;
   for (const name in object) {
     const each = object[name];
-    if (typeof each === "object") object[name] = restored(each, restore);
+    if (typeof each === "object") object[name] = restoreArrays(each, restore);
   }
   return value;
 }
 
-function isArray(value: object): value is { $: Reference } {
+function isReference(value: object): value is { $: Reference } {
   return "$" in value;
 }
 

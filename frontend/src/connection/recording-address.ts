@@ -7,7 +7,7 @@ export function recordingIn(address: string): string | null {
 }
 
 /** Returns the address of the page of a recording; of the live page for null. */
-export function addressOf(address: string, recording: string | null): string {
+export function withRecording(address: string, recording: string | null): string {
   const url = new URL(address);
   if (recording === null) url.searchParams.delete(PARAMETER);
   else url.searchParams.set(PARAMETER, recording);

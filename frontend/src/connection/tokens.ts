@@ -27,28 +27,28 @@ export class Tokens {
 
   /** The token to send next; the known tokens alternate after refusals. */
   get current(): string | null {
-    const { known } = this;
-    return known[this.refusals % Math.max(1, known.length)] ?? null;
+    const { knownTokens } = this;
+    return knownTokens[this.refusals % Math.max(1, knownTokens.length)] ?? null;
   }
 
   /** Stores a token that the server accepted, and removes it from the address bar. */
-  accepted(token: string): void {
+  accept(token: string): void {
     const { address, storage } = this;
-    this.take(token);
+    this.use(token);
     storage.setItem(KEY, token);
     // Where the browser stores nothing, the token must stay in the address.
-    const isKept = storage.lasts && storage.getItem(KEY) === token;
+    const isKept = storage.isPersistent && storage.getItem(KEY) === token;
     if (isKept && tokenIn(address.href) !== null) address.moveTo(withToken(address.href, null));
   }
 
   /** Notes that the current token was refused; returns whether another one remains to be tried. */
-  refused(): boolean {
+  refuse(): boolean {
     this.refusals += 1;
-    return this.refusals < this.known.length;
+    return this.refusals < this.knownTokens.length;
   }
 
   /** Uses this token from now on. */
-  take(token: string): void {
+  use(token: string): void {
     this.own = token;
     this.refusals = 0;
   }
@@ -58,7 +58,7 @@ export class Tokens {
     return withToken(this.address.href, this.current);
   }
 
-  private get known(): string[] {
+  private get knownTokens(): string[] {
     const known = [this.own, this.storage.getItem(KEY)].filter((token) => token !== null);
     return [...new Set(known)];
   }

@@ -30,19 +30,19 @@ export class Upload {
   /** Uploads a recording and returns the server's name for it; null if it was cancelled. */
   async send(name: string, files: readonly NamedFile[]): Promise<string | null> {
     const announced = { name, files: files.map((each) => ({ name: each.name, size: each.file.size })) };
-    this.key = (await this.ask("POST", "recordings", JSON.stringify(announced)))?.key ?? "";
+    this.key = (await this.fetchAnswer("POST", "recordings", JSON.stringify(announced)))?.key ?? "";
     let before = 0;
     for (const [number, { file }] of files.entries()) {
-      await this.ask("PUT", `recordings/${this.key}/${number}`, file, (sent) => this.progress(before + sent));
+      await this.fetchAnswer("PUT", `recordings/${this.key}/${number}`, file, (sent) => this.progress(before + sent));
       before += file.size;
     }
     this.progress(before);
-    return (await this.ask("POST", `recordings/${this.key}`, null))?.recording ?? null;
+    return (await this.fetchAnswer("POST", `recordings/${this.key}`, null))?.recording ?? null;
   }
 
   /** Opens a recording of the server by the address of its file, and returns its name; null if this was cancelled. */
   async show(file: string): Promise<string | null> {
-    return (await this.ask("POST", file, null))?.recording ?? null;
+    return (await this.fetchAnswer("POST", file, null))?.recording ?? null;
   }
 
   cancel(): void {
@@ -52,7 +52,7 @@ export class Upload {
   }
 
   /** Sends a request and returns the server's answer; null once this is cancelled. */
-  private ask(method: string, path: string, body: Blob | string | null, sent?: (bytes: number) => void): Promise<Answer | null> {
+  private fetchAnswer(method: string, path: string, body: Blob | string | null, sent?: (bytes: number) => void): Promise<Answer | null> {
     if (this.cancelled) return Promise.resolve(null);
     return new Promise((resolve, reject) => {
       const request = new XMLHttpRequest();
@@ -60,7 +60,7 @@ export class Upload {
       request.open(method, this.address(path));
       if (sent) request.upload.addEventListener("progress", ({ loaded }) => sent(loaded));
       request.addEventListener("load", () => {
-        const answer = parsed(request.responseText);
+        const answer = parseAnswer(request.responseText);
         if (request.status < 300 && answer.problem === undefined) resolve(answer);
         else reject(new RefusedError(answer.problem ?? request.responseText.trim()));
       });
@@ -85,7 +85,7 @@ interface Answer {
   problem?: string;
 }
 
-function parsed(text: string): Answer {
+function parseAnswer(text: string): Answer {
   try {
     return JSON.parse(text) as Answer;
   } catch {

@@ -4,7 +4,7 @@ import type { FrameTable, JointControl, JointScene, RobotScene } from "../protoc
 
 type Positions = Readonly<Record<string, number>>;
 
-const MOST_FOLLOWED = 64;
+const MAX_MIMIC_DEPTH = 64;
 
 /**
  * A frame below another: its fixed pose in the parent, or the joint that moves it, and the joint that leads that joint.
@@ -32,7 +32,7 @@ export interface FollowingRobot {
 export class MovingRobot {
   private readonly frames: Frame[];
   private readonly order: readonly number[];
-  private readonly anchor: { row: number; pose: Matrix4 };
+  private readonly fixedFrame: { row: number; pose: Matrix4 };
 
   constructor(
     private readonly table: FrameTable,
@@ -43,7 +43,7 @@ export class MovingRobot {
   ) {
     const poses = table.names.map((_, row) => poseAt(recorded.poses, row));
     const own = Object.fromEntries(robot.joints.map(({ name }) => [name, name]));
-    const led = new Map([{ robot, joints: own }, ...following].flatMap(ledFrames));
+    const led = new Map([{ robot, joints: own }, ...following].flatMap(drivenFrames));
     this.frames = table.names.map((name, row) => {
       const parent = table.parents[row] ?? -1;
       const pose = poses[row] ?? null;
@@ -56,7 +56,7 @@ export class MovingRobot {
     this.order = parentsFirst(this.frames);
     // The fixed frame must not move, wherever it is in the tree. It is the frame whose recorded pose is the identity.
     const row = Math.max(0, poses.findIndex((pose) => pose !== null && isIdentity(pose)));
-    this.anchor = { row, pose: poses[row]?.clone() ?? new Matrix4() };
+    this.fixedFrame = { row, pose: poses[row]?.clone() ?? new Matrix4() };
   }
 
   /** Returns the transforms of all frames for joint positions, rad or m. */
@@ -69,7 +69,7 @@ export class MovingRobot {
       poses[row]?.copy(local);
       if (above) poses[row]?.premultiply(above);
     }
-    const shift = this.anchor.pose.clone().multiply((poses[this.anchor.row] ?? new Matrix4()).clone().invert());
+    const shift = this.fixedFrame.pose.clone().multiply((poses[this.fixedFrame.row] ?? new Matrix4()).clone().invert());
     const numbers = new Float32Array(poses.length * 7);
     const [at, turn, scale] = [new Vector3(), new Quaternion(), new Vector3()];
     poses.forEach((pose, row) => {
@@ -82,7 +82,7 @@ export class MovingRobot {
   /** Returns the position of a joint, also of one that mimics another. */
   position(name: string, positions: Positions): number {
     let [factor, offset, at] = [1, 0, name];
-    for (let i = 0; i < MOST_FOLLOWED; i++) {
+    for (let i = 0; i < MAX_MIMIC_DEPTH; i++) {
       const control = this.controls.find((each) => each.name === at);
       if (!control || control.mimic === null) break;
       offset += factor * control.offset;
@@ -94,7 +94,7 @@ export class MovingRobot {
 }
 
 /** Returns the frames that joints of a robot move, each with its joint, the frame above it and the leading joint. */
-function ledFrames({ robot, joints }: FollowingRobot): [string, { joint: JointScene; above: string | undefined; leader: string }][] {
+function drivenFrames({ robot, joints }: FollowingRobot): [string, { joint: JointScene; above: string | undefined; leader: string }][] {
   const frameOf = new Map(robot.links.map(({ name, frame }) => [name, frame]));
   return robot.joints.flatMap((joint) => {
     const [frame, leader] = [frameOf.get(joint.child), joints[joint.name]];

@@ -2,7 +2,7 @@ import { Connection } from "../connection/connection";
 import type { FrameTable, JointControl, PageMessage, Property, RobotMeasured } from "../protocol";
 import { unpackTransforms } from "../connection/transforms";
 import { MovingRobot } from "./moving-robot";
-import { bytesOf, type Recording } from "./recording";
+import { decodeBase64, type Recording } from "./recording";
 
 const GRID = "rviz_default_plugins/Grid";
 const TF = "rviz_default_plugins/TF";
@@ -14,7 +14,7 @@ export class RecordedConnection extends Connection {
   private controls: readonly JointControl[] = [];
   private robot: MovingRobot | null = null;
   private positions: Record<string, number> = {};
-  private start: Readonly<Record<string, number>> = {};
+  private startPositions: Readonly<Record<string, number>> = {};
 
   constructor(private readonly recording: Recording) {
     super("");
@@ -22,16 +22,16 @@ export class RecordedConnection extends Connection {
 
   override open(): void {
     const { messages, frames } = this.recording;
-    this.become("connected");
+    this.setState("connected");
     for (const message of messages) {
       this.message.emit(message);
       if (message.type === "joints") this.controls = message.controls ?? [];
       if (message.type === "joint_positions") this.positions = { ...message.positions };
       if (message.type === "frame_table") this.prepare(message);
     }
-    this.start = { ...this.positions };
-    for (const frame of frames) this.receiveBytes(bytesOf(frame).buffer);
-    this.moved();
+    this.startPositions = { ...this.positions };
+    for (const frame of frames) this.receiveBytes(decodeBase64(frame).buffer);
+    this.emitPositions();
   }
 
   /** Handles requests that move joints. Others would need a server; the page shows its own edits without one. */
@@ -40,14 +40,14 @@ export class RecordedConnection extends Connection {
     if (message.type === "set_joint") this.move({ [message.name]: message.position });
     else if (message.type === "set_joints") this.move(message.positions);
     else if (message.type === "center_joints") this.move(Object.fromEntries(controls.map(({ name, zero }) => [name, zero])));
-    else if (message.type === "randomize_joints") this.move(Object.fromEntries(controls.map((each) => [each.name, anywhere(each)])));
+    else if (message.type === "randomize_joints") this.move(Object.fromEntries(controls.map((each) => [each.name, randomPosition(each)])));
     else if (message.type === "robot_measured") this.fitSizes(message);
   }
 
   /** Moves the joints to their positions at the time of the export. */
   reset(): void {
-    this.positions = { ...this.start };
-    this.moved();
+    this.positions = { ...this.startPositions };
+    this.emitPositions();
   }
 
   /**
@@ -70,7 +70,7 @@ export class RecordedConnection extends Connection {
   private prepare(table: FrameTable): void {
     const { messages, frames, display } = this.recording;
     const robot = messages.find((message) => message.type === "robot_scene" && message.display === display);
-    const recorded = frames.map((frame) => unpackTransforms(bytesOf(frame).buffer)).find((each) => each !== null);
+    const recorded = frames.map((frame) => unpackTransforms(decodeBase64(frame).buffer)).find((each) => each !== null);
     if (robot?.type !== "robot_scene" || !recorded) return;
     const compared = messages.find((message) => message.type === "compared_descriptions");
     const old = compared && messages.find((message) => message.type === "robot_scene" && message.display === compared.old.display);
@@ -83,10 +83,10 @@ export class RecordedConnection extends Connection {
       const wanted = positions[name];
       if (wanted !== undefined && mimic === null) this.positions[name] = Math.min(upper, Math.max(lower, wanted));
     }
-    this.moved();
+    this.emitPositions();
   }
 
-  private moved(): void {
+  private emitPositions(): void {
     const { robot, positions } = this;
     if (!robot) return;
     for (const { name, mimic } of this.controls) if (mimic !== null) positions[name] = robot.position(name, positions);
@@ -109,6 +109,6 @@ function markerScaleFor(diagonal: number, spacing: number): number {
   return Number((axis / AXIS).toPrecision(2));
 }
 
-function anywhere({ lower, upper }: JointControl): number {
+function randomPosition({ lower, upper }: JointControl): number {
   return lower + Math.random() * (upper - lower);
 }

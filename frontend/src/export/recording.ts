@@ -24,6 +24,6 @@ export function readRecording(element: HTMLElement): Recording {
   return JSON.parse(element.textContent) as Recording;
 }
 
-export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
+export function decodeBase64(base64: string): Uint8Array<ArrayBuffer> {
   return Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
 }

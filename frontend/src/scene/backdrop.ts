@@ -6,7 +6,7 @@ import type { Theme } from "../state/theme";
  */
 const SQUARES = 24;
 /** The render order of the backdrop: drawn before everything else. */
-const FIRST = -1000;
+const RENDER_ORDER = -1000;
 
 /** Colours as 0xrrggbb; `ground` is the colour straight down. */
 interface Colors {
@@ -56,7 +56,7 @@ export class Backdrop {
   constructor() {
     const style = { vertexShader: VERTEX, fragmentShader: FRAGMENT, depthTest: false, depthWrite: false };
     this.root = new Mesh(new PlaneGeometry(2, 2, SQUARES, SQUARES), new ShaderMaterial({ ...style, uniforms: this.uniforms }));
-    this.root.renderOrder = FIRST;
+    this.root.renderOrder = RENDER_ORDER;
     this.root.frustumCulled = false;
     this.root.visible = false;
     this.root.onBeforeRender = (_renderer, _scene, camera) => {

@@ -51,28 +51,28 @@ export class DepthMap {
   }
 
   /** Whether a point, in normalized device coordinates (-1 to 1, y up), is not hidden. */
-  isSeen(x: number, y: number, z: number): boolean {
+  isVisible(x: number, y: number, z: number): boolean {
     const column = Math.round(((x + 1) / 2) * this.size.x - 0.5);
     const row = Math.round(((y + 1) / 2) * this.size.y - 0.5);
-    const distance = this.distance(z);
+    const distance = this.toDistance(z);
     // Check the neighbours, too: points on an edge fall next to their surface as often as on it.
     for (let dy = -1; dy <= 1; dy++) {
       for (let dx = -1; dx <= 1; dx++) {
-        if (this.surface(column + dx, row + dy) >= distance * (1 - TOLERANCE)) return true;
+        if (this.surfaceDistance(column + dx, row + dy) >= distance * (1 - TOLERANCE)) return true;
       }
     }
     return false;
   }
 
   /** Returns the distance from the camera to the nearest surface at a pixel, m along the viewing axis. */
-  private surface(column: number, row: number): number {
+  private surfaceDistance(column: number, row: number): number {
     if (column < 0 || row < 0 || column >= this.size.x || row >= this.size.y) return 0;
     const first = (row * this.size.x + column) * 4;
     const [a = 0, b = 0, c = 0, d = 0] = this.pixels.subarray(first, first + 4);
-    return this.distance(2 * ((a + b / 255 + c / 65025 + d / 16581375) / 255) - 1);
+    return this.toDistance(2 * ((a + b / 255 + c / 65025 + d / 16581375) / 255) - 1);
   }
 
-  private distance(z: number): number {
+  private toDistance(z: number): number {
     return -this.at.set(0, 0, z).applyMatrix4(this.camera.projectionMatrixInverse).z;
   }
 }

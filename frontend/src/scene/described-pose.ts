@@ -1,8 +1,8 @@
 import { Quaternion, Vector3, type Matrix4 } from "three";
-import type { Described } from "./picking";
+import type { DescriptionRow } from "./picking";
 
 /** Returns the rows `Position` and `Orientation` of RViz's Selection panel. */
-export function describedPose(pose: Matrix4): Described[] {
+export function describedPose(pose: Matrix4): DescriptionRow[] {
   const [position, orientation] = [new Vector3(), new Quaternion()];
   pose.decompose(position, orientation, new Vector3());
   const { x, y, z } = position;
@@ -13,7 +13,7 @@ export function describedPose(pose: Matrix4): Described[] {
 }
 
 /** Returns a row whose value lists all numbers, with one row for each number below it. */
-export function describedNumbers(name: string, numbers: Readonly<Record<string, number>>): Described {
+export function describedNumbers(name: string, numbers: Readonly<Record<string, number>>): DescriptionRow {
   const children = Object.entries(numbers).map(([key, value]) => ({ name: key, value: String(Number(value.toPrecision(6))) }));
   return { name, value: children.map(({ value }) => value).join("; "), children };
 }

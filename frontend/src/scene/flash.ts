@@ -6,7 +6,7 @@ import type { Viewport } from "./viewport";
 
 const COLOR = 0xff9d3c;
 const FILL = 0.55;
-const LASTS_MS = 1600;
+const DURATION_MS = 1600;
 /** ms at full strength at the start, because new meshes may take a moment to load. */
 const FULL_MS = 600;
 
@@ -35,10 +35,10 @@ export class Flash {
   render(): void {
     if (this.links.length === 0) return;
     const now = performance.now();
-    this.links = this.links.filter(({ startMs }) => now - startMs < LASTS_MS);
+    this.links = this.links.filter(({ startMs }) => now - startMs < DURATION_MS);
     const objects = this.links.flatMap(({ display, names }) => [...names].flatMap((name) => this.objectsOf(display, name)));
     const newest = Math.max(...this.links.map(({ startMs }) => startMs));
-    this.outline.strength = Math.min(1, Math.max(0, (LASTS_MS - (now - newest)) / (LASTS_MS - FULL_MS)));
+    this.outline.strength = Math.min(1, Math.max(0, (DURATION_MS - (now - newest)) / (DURATION_MS - FULL_MS)));
     this.outline.set(objects);
     this.outline.render();
     this.outline.set([]);

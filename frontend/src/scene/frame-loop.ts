@@ -50,20 +50,20 @@ export class FrameLoop {
   /** Maximum number of frames per second. */
   rate = 30;
   private requestedAt: number | null = null;
-  private readonly besides = new Set<() => void>();
-  private ticks = false;
+  private readonly scheduled = new Set<() => void>();
+  private isTickRequested = false;
   /** The earliest time of the next frame. */
   private dueMs = -Infinity;
   private lateness = 0;
-  private timely = 0;
+  private timelyCount = 0;
   private patience = TIMELY_FRAMES;
   /** The index in `DETAILS` for moving frames. */
-  private level = 0;
-  private lastIsFine = false;
+  private detailLevel = 0;
+  private wasLastFine = false;
   private stillTimer = 0;
   private drawnAt = -Infinity;
-  private recent: number[] = [];
-  private count = 0;
+  private recentTimes: number[] = [];
+  private frameCount = 0;
 
   /**
    * @param held - whether to draw nothing before `release`. For a software renderer, a frame of an empty scene is as
@@ -76,28 +76,28 @@ export class FrameLoop {
 
   /** Whether nothing has changed since the last frame, in the scene or outside it, and that frame was a fine one. */
   get settled(): boolean {
-    return this.requestedAt === null && this.besides.size === 0 && this.lastIsFine;
+    return this.requestedAt === null && this.scheduled.size === 0 && this.wasLastFine;
   }
 
   /** Draws moving frames coarsely from the first one on, because the renderer is known to be slow. */
   expectSlow(): void {
-    this.level = Math.max(this.level, 1);
+    this.detailLevel = Math.max(this.detailLevel, 1);
   }
 
   get framesDrawn(): number {
-    return this.count;
+    return this.frameCount;
   }
 
   /** Returns the number of frames in the last second; null while the scene is idle. */
   framesPerSecond(nowMs: number): number | null {
-    this.recent = this.recent.filter((at) => nowMs - at < 1000);
-    return nowMs - this.drawnAt > IDLE_AFTER_MS ? null : this.recent.length;
+    this.recentTimes = this.recentTimes.filter((at) => nowMs - at < 1000);
+    return nowMs - this.drawnAt > IDLE_AFTER_MS ? null : this.recentTimes.length;
   }
 
   /** Starts drawing, now that there is something to draw. */
   release(): void {
     this.held = false;
-    if (this.requestedAt !== null) this.askForTick();
+    if (this.requestedAt !== null) this.requestTick();
   }
 
   /** Redraws immediately after the canvas was resized, which clears it: it would flicker until the next frame. */
@@ -109,18 +109,18 @@ export class FrameLoop {
   invalidate(): void {
     if (this.requestedAt !== null) return;
     this.requestedAt = performance.now();
-    this.askForTick();
+    this.requestTick();
   }
 
   /** Updates something outside the scene when the next frame is due; the scene is not drawn for it. */
-  beside(show: () => void): void {
-    this.besides.add(show);
-    this.askForTick();
+  schedule(show: () => void): void {
+    this.scheduled.add(show);
+    this.requestTick();
   }
 
-  private askForTick(): void {
-    if (this.ticks) return;
-    this.ticks = true;
+  private requestTick(): void {
+    if (this.isTickRequested) return;
+    this.isTickRequested = true;
     requestAnimationFrame(this.tick);
   }
 
@@ -128,53 +128,53 @@ export class FrameLoop {
     const now = performance.now();
     const interval = 1000 / Math.max(1, this.rate);
     const due = this.dueMs;
-    this.ticks = false;
+    this.isTickRequested = false;
     if (now < due - TOLERANCE_MS) {
-      this.askForTick();
+      this.requestTick();
       return;
     }
     // A late frame must not delay the frames after it, or each late frame would cost one.
     this.dueMs = Math.max(due, now - interval) + interval;
-    const besides = [...this.besides];
-    this.besides.clear();
+    const besides = [...this.scheduled];
+    this.scheduled.clear();
     for (const show of besides) show();
     if (this.requestedAt === null || this.held) return;
-    if (this.count >= FIRST_FRAMES) this.judge(now - Math.max(this.requestedAt, due));
+    if (this.frameCount >= FIRST_FRAMES) this.judge(now - Math.max(this.requestedAt, due));
     this.requestedAt = null;
     // The first frame must appear quickly.
-    const level = Math.max(this.level, this.count > 0 ? 0 : 1);
+    const level = Math.max(this.detailLevel, this.frameCount > 0 ? 0 : 1);
     this.paint(now, level);
     clearTimeout(this.stillTimer);
-    if (level > 0) this.stillTimer = window.setTimeout(() => this.stand(), STILL_AFTER_MS);
+    if (level > 0) this.stillTimer = window.setTimeout(() => this.paintStill(), STILL_AFTER_MS);
   };
 
   private judge(delay: number): void {
     const late = delay > LATE_MS;
     this.judged.emit(late);
     this.lateness = Math.max(0, this.lateness + (late ? 1 : -1));
-    this.timely = late ? 0 : this.timely + 1;
-    if (this.lateness >= LATE_FRAMES) this.move(1);
-    else if (this.timely >= this.patience && this.level > 0) {
+    this.timelyCount = late ? 0 : this.timelyCount + 1;
+    if (this.lateness >= LATE_FRAMES) this.changeLevel(1);
+    else if (this.timelyCount >= this.patience && this.detailLevel > 0) {
       this.patience *= 2;
-      this.move(-1);
+      this.changeLevel(-1);
     }
   }
 
-  private move(coarser: number): void {
-    this.level = Math.min(this.level + coarser, DETAILS.length - 1);
-    this.lateness = this.timely = 0;
+  private changeLevel(coarser: number): void {
+    this.detailLevel = Math.min(this.detailLevel + coarser, DETAILS.length - 1);
+    this.lateness = this.timelyCount = 0;
   }
 
-  private stand(): void {
+  private paintStill(): void {
     if (this.requestedAt === null) this.paint(performance.now(), 0);
   }
 
   private paint(now: number, level: number): void {
     this.drawnAt = now;
-    this.recent.push(now);
+    this.recentTimes.push(now);
     this.draw(DETAILS[level] ?? FINEST);
-    this.lastIsFine = level === 0;
-    this.count += 1;
+    this.wasLastFine = level === 0;
+    this.frameCount += 1;
     this.drawn.emit();
   }
 }

@@ -1,41 +1,41 @@
 import type { Camera } from "three";
 import type { ViewSize } from "../state/views/camera";
 import type { Span } from "../state/views/vector";
-import { reachOf, type ScreenReach } from "./screen-reach";
+import { extentOf, type ScreenExtent } from "./screen-reach";
 
 /** The maximum share of the canvas's width and height that may be excluded when the camera fits something into view. */
-const MOST_COVERED = 0.6;
+const MAX_COVERED = 0.6;
 
 /** The part of a viewport that is used here. */
-interface Seen {
+interface ShiftedView {
   readonly size: ViewSize;
   readonly camera: Camera;
-  aside: number;
-  below: number;
+  shiftLeft: number;
+  shiftDown: number;
 }
 
 /** The part of the canvas that nothing covers, and the moves of the view that bring robots into it. */
 export class FreeRoom {
   /** Returns the width covered at the right of the canvas, pixels. */
   covered: () => number = () => 0;
-  private above = 0;
+  private coveredAbove = 0;
 
   /**
    * @param robots - returns the bounding box of all robots.
    * @param aim - updates the camera.
    */
   constructor(
-    private readonly viewport: Seen,
+    private readonly viewport: ShiftedView,
     private readonly robots: () => Span | null,
     private readonly aim: () => void,
     private readonly invalidate: () => void,
   ) {}
 
   /** Returns the size of the free part, and moves the camera's centre to the centre of that part. */
-  take(): ViewSize {
+  center(): ViewSize {
     const { width, height } = this.viewport.size;
-    const [right, above] = [Math.min(this.covered(), width * MOST_COVERED), Math.min(this.above, height * MOST_COVERED)];
-    Object.assign(this.viewport, { aside: right / 2, below: above / 2 });
+    const [right, above] = [Math.min(this.covered(), width * MAX_COVERED), Math.min(this.coveredAbove, height * MAX_COVERED)];
+    Object.assign(this.viewport, { shiftLeft: right / 2, shiftDown: above / 2 });
     return { width: width - right, height: height - above };
   }
 
@@ -45,12 +45,12 @@ export class FreeRoom {
    */
   makeRoom(): void {
     const { viewport } = this;
-    const before = viewport.aside;
-    viewport.aside = 0;
-    const wanted = Math.min(this.covered(), viewport.size.width * MOST_COVERED) / 2;
+    const before = viewport.shiftLeft;
+    viewport.shiftLeft = 0;
+    const wanted = Math.min(this.covered(), viewport.size.width * MAX_COVERED) / 2;
     const reach = wanted > 0 ? this.reach() : null;
-    viewport.aside = reach ? Math.max(0, Math.min(wanted, reach.left)) : wanted;
-    if (viewport.aside !== before) this.invalidate();
+    viewport.shiftLeft = reach ? Math.max(0, Math.min(wanted, reach.left)) : wanted;
+    if (viewport.shiftLeft !== before) this.invalidate();
   }
 
   /**
@@ -59,12 +59,12 @@ export class FreeRoom {
    */
   makeRoomAbove(height: number): void {
     const { viewport } = this;
-    const before = viewport.below;
-    this.above = height;
-    viewport.below = 0;
+    const before = viewport.shiftDown;
+    this.coveredAbove = height;
+    viewport.shiftDown = 0;
     const reach = height > 0 ? this.reach() : null;
-    if (reach) viewport.below = Math.max(0, Math.min(height - reach.top, viewport.size.height - reach.bottom));
-    if (viewport.below !== before) this.invalidate();
+    if (reach) viewport.shiftDown = Math.max(0, Math.min(height - reach.top, viewport.size.height - reach.bottom));
+    if (viewport.shiftDown !== before) this.invalidate();
   }
 
   /** The rightmost pixel column that robots cover, from the left edge of the canvas; 0 without robots. */
@@ -72,9 +72,9 @@ export class FreeRoom {
     return this.reach()?.right ?? 0;
   }
 
-  private reach(): ScreenReach | null {
+  private reach(): ScreenExtent | null {
     const box = this.robots();
     this.aim();
-    return box && reachOf(box, this.viewport.camera, this.viewport.size);
+    return box && extentOf(box, this.viewport.camera, this.viewport.size);
   }
 }

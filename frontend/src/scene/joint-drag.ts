@@ -17,7 +17,7 @@ const TOOLS = ["rviz_default_plugins/Interact", "rviz_default_plugins/MoveCamera
  * The joint being dragged: its axis and origin, and the grabbed point of its link, in the fixed frame at the start of
  * the drag.
  */
-interface Hold {
+interface JointGrab {
   readonly joint: JointDetails;
   readonly axis: Vector3;
   readonly origin: Vector3;
@@ -31,8 +31,8 @@ interface Hold {
  * can be moved.
  */
 export class JointDrag {
-  private hold: Hold | null = null;
-  private isHolding = false;
+  private grabbed: JointGrab | null = null;
+  private hasAxes = false;
   private isHovering = false;
 
   constructor(
@@ -42,27 +42,27 @@ export class JointDrag {
 
   /** Handles a mouse event; returns false if the event is left to the active tool. */
   pointer(event: ToolEvent): boolean {
-    if (this.hold) {
-      if (event.type === "move" && event.left) this.pull(this.hold, event);
-      else if (event.type === "up" && !event.left) this.letGo();
+    if (this.grabbed) {
+      if (event.type === "move" && event.left) this.pull(this.grabbed, event);
+      else if (event.type === "up" && !event.left) this.release();
       return true;
     }
     const { joints, tools } = this.session;
-    const wanted = joints.controls !== null && (event.alt || joints.handsOn) && event.type !== "leave";
+    const wanted = joints.controls !== null && (event.alt || joints.dragsWithoutAlt) && event.type !== "leave";
     if (!wanted || (tools.current && !TOOLS.includes(tools.current.cls))) {
       this.stopHovering();
       return false;
     }
-    this.askForAxes();
+    this.requestAxes();
     if (event.type === "down" && event.button === "left" && !event.shift) return this.grab(event);
     if (event.type === "move" && !event.left && !event.middle && !event.right) return this.hover(event);
     return false;
   }
 
   /** Requests the joints' axes, which are part of the description. Pages that never drag do not need it. */
-  private askForAxes(): void {
-    if (!this.isHolding) this.session.description.hold();
-    this.isHolding = true;
+  private requestAxes(): void {
+    if (!this.hasAxes) this.session.description.hold();
+    this.hasAxes = true;
   }
 
   private hover(event: ToolEvent): boolean {
@@ -83,12 +83,12 @@ export class JointDrag {
     // A joint's axis is the same in its own frame and in the frame of its child link.
     const axis = new Vector3().fromArray(joint.axis).transformDirection(pose);
     const origin = new Vector3().setFromMatrixPosition(pose);
-    this.hold = { joint, axis, origin, grabbed: point, start: joints.positions[joint.name] ?? 0, moved: 0 };
+    this.grabbed = { joint, axis, origin, grabbed: point, start: joints.positions[joint.name] ?? 0, moved: 0 };
     this.stage.viewport.canvas.style.cursor = "grabbing";
     return true;
   }
 
-  private pull(hold: Hold, event: ToolEvent): void {
+  private pull(hold: JointGrab, event: ToolEvent): void {
     const { ray } = this.stage.picker.rayAt(event.x, event.y);
     const { joint, axis, origin, grabbed } = hold;
     hold.moved =
@@ -99,8 +99,8 @@ export class JointDrag {
     this.session.joints.move({ [control.name]: Math.min(Math.max(position, control.lower), control.upper) });
   }
 
-  private letGo(): void {
-    this.hold = null;
+  private release(): void {
+    this.grabbed = null;
     this.isHovering = true;
     this.stopHovering();
   }
@@ -114,7 +114,7 @@ export class JointDrag {
 
   /** Returns the nearest movable joint above the link under the pointer. */
   private find(event: ToolEvent): { model: DescriptionModel; joint: JointDetails; point: Vector3 } | null {
-    const found = this.stage.picker.at(event.x, event.y);
+    const found = this.stage.picker.objectAt(event.x, event.y);
     const model = found && this.session.description.of(found.display);
     if (!model) return null;
     for (let joint = model.jointAbove(found.hit.key); joint; joint = model.jointAbove(joint.parent)) {

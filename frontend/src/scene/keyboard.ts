@@ -18,11 +18,11 @@ export class Keyboard {
     document.addEventListener("keydown", (event) => {
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.target instanceof Element && event.target.closest(TAKES_LETTERS)) return;
-      if (this.pressed(event.key.length === 1 ? event.key.toLowerCase() : event.key, event.shiftKey)) event.preventDefault();
+      if (this.runKey(event.key.length === 1 ? event.key.toLowerCase() : event.key, event.shiftKey)) event.preventDefault();
     });
   }
 
-  private pressed(key: string, shift: boolean): boolean {
+  private runKey(key: string, shift: boolean): boolean {
     const { session, toolbox } = this;
     const { tools } = session;
     if (key === "Escape") return this.escape();
@@ -31,7 +31,7 @@ export class Keyboard {
       tools.toggle(tool);
       return true;
     }
-    if (toolbox.current.key?.(key) === true && (tool || (key === "f" && !shift))) return true;
+    if (toolbox.current.pressKey?.(key) === true && (tool || (key === "f" && !shift))) return true;
     switch (key) {
       case "f":
         if (shift) this.stage.fit();
@@ -59,8 +59,8 @@ export class Keyboard {
 
   /** Looks at the point under the pointer; without one, fits the selection, or everything, into view. */
   private focus(): void {
-    const { place } = this.controls;
-    const point = place && this.stage.picker.pointAt(place.x, place.y);
+    const { position } = this.controls;
+    const point = position && this.stage.picker.pointAt(position.x, position.y);
     if (point) this.session.view.lookAt(point);
     else this.stage.fit();
   }

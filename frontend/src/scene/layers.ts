@@ -5,4 +5,4 @@ export const SELECTED = 1;
 /** Highlighted for a moment. */
 export const FLASHING = 2;
 /** Tested by rays, but drawn as part of a batch. */
-export const TOUCHED = 3;
+export const PICKABLE = 3;

@@ -5,7 +5,7 @@ export const AMBIENT = 0.2;
 export type Lighting = "Camera" | "Soft" | "Studio" | "World";
 
 /** Whether the lighting consists of lights in the scene. */
-export function standsInScene(lighting: Lighting): boolean {
+export function usesSceneLights(lighting: Lighting): boolean {
   return lighting === "Studio" || lighting === "World";
 }
 

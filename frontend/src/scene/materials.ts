@@ -18,8 +18,8 @@ import {
   type Texture,
 } from "three";
 import { filmic } from "./filmic-tone";
-import { standsInScene, type Lighting } from "./light";
-import { soft } from "./soft-material";
+import { usesSceneLights, type Lighting } from "./light";
+import { withSoftLight } from "./soft-material";
 
 /**
  * The reflective properties of a surface: roughness and metalness from 0 to 1, maps of these and of the normals,
@@ -69,12 +69,12 @@ export function blend(material: Material, seeThrough: boolean): void {
 }
 
 /** Returns the polygon offset that keeps lines and marks in the plane of a surface visible. */
-export function behind(isBehind: boolean): { polygonOffset: boolean; polygonOffsetFactor: number; polygonOffsetUnits: number } {
+export function offsetBehind(isBehind: boolean): { polygonOffset: boolean; polygonOffsetFactor: number; polygonOffsetUnits: number } {
   return { polygonOffset: isBehind, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
 }
 
 /** Whether any lines are translucent, by their opacity or the alpha of their colours r g b a. */
-export function areSeenThrough(opacity: number, colors: BufferAttribute | InterleavedBufferAttribute | undefined): boolean {
+export function areTranslucent(opacity: number, colors: BufferAttribute | InterleavedBufferAttribute | undefined): boolean {
   if (opacity < 1) return true;
   for (let i = 0; colors && i < colors.count; i++) if (colors.getW(i) < 1) return true;
   return false;
@@ -91,7 +91,7 @@ export class MaterialPool {
 
   /** Whether lights in the scene illuminate the surfaces, so that reflective properties apply. */
   get isLit(): boolean {
-    return standsInScene(this.lighting);
+    return usesSceneLights(this.lighting);
   }
 
   get(look: Look): Material {
@@ -111,18 +111,18 @@ export class MaterialPool {
         map: look.map,
         vertexColors: look.vertexColors,
         side: look.doubleSided ? DoubleSide : FrontSide,
-        ...behind(look.behind === true),
+        ...offsetBehind(look.behind === true),
       };
-      material = surface ? reflecting(style, surface) : new MeshLambertMaterial(style);
+      material = surface ? reflectiveMaterial(style, surface) : new MeshLambertMaterial(style);
       if (this.lighting === "Studio") filmic(material);
-      else if (this.lighting === "Soft") soft(material);
+      else if (this.lighting === "Soft") withSoftLight(material);
       this.materials.set(key, material);
     }
     return material;
   }
 
   /** Runs `paint`, which requests every material still needed, and disposes of the others. */
-  renew(paint: () => void): void {
+  repaint(paint: () => void): void {
     this.used.clear();
     paint();
     for (const [key, material] of this.materials) {
@@ -139,28 +139,28 @@ export class MaterialPool {
 }
 
 /** Returns a material that reflects lights and, as far as it is metallic, a grey room. */
-function reflecting(style: MeshStandardMaterialParameters, surface: Surface): MeshStandardMaterial {
-  const envMap = surface.metalness > 0 ? room() : null;
+function reflectiveMaterial(style: MeshStandardMaterialParameters, surface: Surface): MeshStandardMaterial {
+  const envMap = surface.metalness > 0 ? roomMap() : null;
   const emissive = new Color(...surface.emissive);
   const material = new MeshStandardMaterial({ ...style, ...surface, emissive, envMap, envMapIntensity: surface.metalness });
   material.envMapRotation.x = Math.PI / 2; // the image has y up
   return material;
 }
 
-let theRoom: DataTexture | null = null;
+let cachedRoom: DataTexture | null = null;
 
 /**
  * Returns the environment map that metal reflects in addition to lights; it would be black without one. The map is
  * bright above and dark below.
  */
-function room(): DataTexture {
-  if (theRoom) return theRoom;
+function roomMap(): DataTexture {
+  if (cachedRoom) return cachedRoom;
   const greys = [90, 90, 110, 150, 190, 215, 230, 240];
-  theRoom = new DataTexture(new Uint8Array(greys.flatMap((grey) => [grey, grey, grey, 255])), 1, greys.length);
-  theRoom.mapping = EquirectangularReflectionMapping;
-  theRoom.magFilter = theRoom.minFilter = LinearFilter;
-  theRoom.needsUpdate = true;
-  return theRoom;
+  cachedRoom = new DataTexture(new Uint8Array(greys.flatMap((grey) => [grey, grey, grey, 255])), 1, greys.length);
+  cachedRoom.mapping = EquirectangularReflectionMapping;
+  cachedRoom.magFilter = cachedRoom.minFilter = LinearFilter;
+  cachedRoom.needsUpdate = true;
+  return cachedRoom;
 }
 
 /** Loads the texture of a URDF material. */

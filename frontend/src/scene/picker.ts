@@ -5,13 +5,13 @@ import { add, scale, type Span, type Vector } from "../state/views/vector";
 import { DepthMap } from "./depth-map";
 import { spanOf } from "./first-look";
 import type { Drawing } from "./displays/drawing";
-import { TOUCHED } from "./layers";
-import type { Described, Hit } from "./picking";
+import { PICKABLE } from "./layers";
+import type { DescriptionRow, Hit } from "./picking";
 import { ScreenBox } from "./selection-box";
 import type { Viewport } from "./viewport";
 
 /** An object of a display under the pointer. */
-export interface Found {
+export interface PickedObject {
   display: string;
   drawing: Drawing;
   hit: Hit;
@@ -36,18 +36,18 @@ export class Picker {
   rayAt(x: number, y: number): Raycaster {
     this.viewport.aim(this.session.view);
     const ray = new Raycaster();
-    ray.layers.enable(TOUCHED);
-    ray.setFromCamera(this.onScreen(x, y), this.viewport.camera);
+    ray.layers.enable(PICKABLE);
+    ray.setFromCamera(this.toDevice(x, y), this.viewport.camera);
     return ray;
   }
 
   /** Returns the nearest object at a position. */
-  at(x: number, y: number): Found | null {
-    return this.along(this.rayAt(x, y));
+  objectAt(x: number, y: number): PickedObject | null {
+    return this.alongRay(this.rayAt(x, y));
   }
 
-  along(ray: Raycaster): Found | null {
-    let best: Found | null = null;
+  alongRay(ray: Raycaster): PickedObject | null {
+    let best: PickedObject | null = null;
     for (const [display, drawing] of this.drawings()) {
       const hit = drawing.pick?.(ray);
       if (hit && (best === null || hit.distance < best.hit.distance)) best = { display, drawing, hit };
@@ -57,7 +57,7 @@ export class Picker {
 
   /** Returns the point of the nearest object at a position, in the fixed frame. */
   pointAt(x: number, y: number): Vector | null {
-    const found = this.at(x, y);
+    const found = this.objectAt(x, y);
     return found && [found.hit.point.x, found.hit.point.y, found.hit.point.z];
   }
 
@@ -71,7 +71,7 @@ export class Picker {
 
   /** Selects the nearest object at a position, or clears the selection. */
   selectAt(x: number, y: number, mode: SelectionMode = "replace"): void {
-    const found = this.at(x, y);
+    const found = this.objectAt(x, y);
     const selected = found && !found.hit.isGround;
     this.session.selection.pick(selected ? [{ display: found.display, key: found.hit.key }] : [], mode);
   }
@@ -79,9 +79,9 @@ export class Picker {
   /** Selects all visible objects in the rectangle between two positions. */
   selectBox(from: Vector2, to: Vector2, mode: SelectionMode): void {
     this.viewport.aim(this.session.view);
-    const [a, b] = [this.onScreen(from.x, from.y), this.onScreen(to.x, to.y)];
+    const [a, b] = [this.toDevice(from.x, from.y), this.toDevice(to.x, to.y)];
     const depths = new DepthMap(this.viewport);
-    const isSeen = depths.isSeen.bind(depths);
+    const isSeen = depths.isVisible.bind(depths);
     const box = new ScreenBox(this.viewport.camera, a.clone().min(b), a.clone().max(b), isSeen);
     const items: SelectedItem[] = [];
     for (const [display, drawing] of this.drawings()) {
@@ -91,7 +91,7 @@ export class Picker {
   }
 
   /** Returns the rows of the Selection panel for an object; null if the object is no longer drawn. */
-  describe(item: SelectedItem): Described | null {
+  describe(item: SelectedItem): DescriptionRow | null {
     for (const [display, drawing] of this.drawings()) {
       if (display === item.display) return drawing.describe?.(item.key) ?? null;
     }
@@ -99,7 +99,7 @@ export class Picker {
   }
 
   /** Returns the centre of the selection, or of all selectable objects if nothing is selected. */
-  middleOfSelection(): Vector | null {
+  centerOfSelection(): Vector | null {
     const span = this.boundsOfSelection() ?? this.boundsOfAll();
     return span && scale(add(span.min, span.max), 0.5);
   }
@@ -126,7 +126,7 @@ export class Picker {
     return spanOf(box);
   }
 
-  private onScreen(x: number, y: number): Vector2 {
+  private toDevice(x: number, y: number): Vector2 {
     const { clientWidth, clientHeight } = this.viewport.canvas;
     return new Vector2((x / clientWidth) * 2 - 1, 1 - (y / clientHeight) * 2);
   }

@@ -24,10 +24,10 @@ export interface SelectionBox {
 }
 
 /** A row of the Selection panel. */
-export interface Described {
+export interface DescriptionRow {
   name: string;
   value?: string;
-  children?: readonly Described[];
+  children?: readonly DescriptionRow[];
 }
 
 /** A mouse event over the scene, as the Interact tool passes it to drawings. */

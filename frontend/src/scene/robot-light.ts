@@ -8,7 +8,7 @@ import type { OwnLight } from "./surroundings";
 export interface LitRobot {
   light: Lighting;
   /** A key of the visible parts. */
-  readonly seen: string;
+  readonly visibleKey: string;
   readonly visibleMeshes: readonly Mesh[];
   /** Returns the height of the ground below the robot, in the fixed frame, m. */
   ground(): number;
@@ -21,7 +21,7 @@ export class RobotLight {
   private readonly studio = new StudioLight();
   private readonly shadow = new ContactShadow();
   /** The key of the visible robots, and the height of the ground below them, m. */
-  private standing = { what: "", height: 0 };
+  private ground = { what: "", height: 0 };
 
   constructor() {
     this.root.add(this.studio.root, this.shadow.root);
@@ -33,18 +33,18 @@ export class RobotLight {
    * @param backdrop - the background colour of a studio.
    * @returns the light in the scene, if any.
    */
-  shine(lighting: Lighting, robots: readonly LitRobot[], backdrop: string): OwnLight | null {
+  update(lighting: Lighting, robots: readonly LitRobot[], backdrop: string): OwnLight | null {
     this.studio.root.visible = lighting === "Studio";
     this.shadow.root.visible = lighting === "Soft";
     if (lighting === "Camera") return null;
-    const what = robots.map((robot) => robot.seen).join(";");
-    if (what !== this.standing.what) this.standing = { what, height: Math.min(...robots.map((robot) => robot.ground())) };
-    const { height } = this.standing;
+    const what = robots.map((robot) => robot.visibleKey).join(";");
+    if (what !== this.ground.what) this.ground = { what, height: Math.min(...robots.map((robot) => robot.ground())) };
+    const { height } = this.ground;
     if (lighting === "Soft") {
-      this.shadow.fall(robots.flatMap((robot) => robot.visibleMeshes), height);
+      this.shadow.update(robots.flatMap((robot) => robot.visibleMeshes), height);
       return null;
     }
-    this.studio.shineOn(robots.reduce((sum, robot) => sum.union(robot.roughBounds()), new Box3()), height);
+    this.studio.update(robots.reduce((sum, robot) => sum.union(robot.roughBounds()), new Box3()), height);
     return { shadows: true, background: null, daylight: null, fog: null, backdrop };
   }
 }

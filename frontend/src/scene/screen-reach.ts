@@ -3,7 +3,7 @@ import type { ViewSize } from "../state/views/camera";
 import type { Span } from "../state/views/vector";
 
 /** The extent of a box on a canvas, in pixels from its left and its upper edge. */
-export interface ScreenReach {
+export interface ScreenExtent {
   readonly left: number;
   readonly right: number;
   readonly top: number;
@@ -11,7 +11,7 @@ export interface ScreenReach {
 }
 
 /** Returns the extent of a box on a canvas; infinite if a part of the box is behind the camera. */
-export function reachOf({ min, max }: Span, camera: Camera, { width, height }: ViewSize): ScreenReach {
+export function extentOf({ min, max }: Span, camera: Camera, { width, height }: ViewSize): ScreenExtent {
   const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => {
     return new Vector3(...([0, 1, 2] as const).map((axis) => ((corner >> axis) & 1 ? max : min)[axis])).applyMatrix4(camera.matrixWorldInverse);
   });

@@ -30,8 +30,8 @@ import { hasOwnBackground } from "./surroundings";
 import { Viewport } from "./viewport";
 
 /** The stage counts as ready after this time even if no link has a pose: some robots never get a transform. */
-const WAITS_FOR_PLACES_MS = 5000;
-const UNSMOOTHED: Detail = { ...FINEST, smooth: false };
+const POSE_TIMEOUT_MS = 5000;
+const NOT_ANTIALIASED: Detail = { ...FINEST, smooth: false };
 
 interface DrawnDisplay {
   display: DisplayState;
@@ -48,10 +48,10 @@ export class Stage {
   private readonly drawings = new Map<string, DrawnDisplay>();
   private readonly outline: Outline;
   private readonly flash: Flash;
-  private readonly marks: InspectLayer;
+  private readonly inspectLayer: InspectLayer;
   private readonly focalShape = new FocalShape();
   /** Objects that only this view shows: handles, and the mark of the focal point. */
-  readonly aids = new Group();
+  readonly overlays = new Group();
   private interaction: Interaction = { enabled: false, hideOthers: false };
   private readonly robotLight = new RobotLight();
   private readonly backdrop = new Backdrop();
@@ -61,7 +61,7 @@ export class Stage {
   /** The time when all meshes were drawn but no link had a pose. */
   private placelessSince: number | null = null;
   /** The part of the canvas that nothing covers. */
-  readonly room: FreeRoom;
+  readonly freeRoom: FreeRoom;
 
   constructor(
     container: HTMLElement,
@@ -72,32 +72,29 @@ export class Stage {
     standIns: StandIns | null = null,
   ) {
     this.meshes = new MeshLibrary(session.meshProgress, files, standIns);
-    this.viewport = new Viewport(container, () => this.loop.redraw(UNSMOOTHED));
-    this.room = new FreeRoom(this.viewport, () => this.boundsOfRobots(), () => this.viewport.aim(session.view), () => this.loop.invalidate());
+    this.viewport = new Viewport(container, () => this.loop.redraw(NOT_ANTIALIASED));
+    this.freeRoom = new FreeRoom(this.viewport, () => this.boundsOfRobots(), () => this.viewport.aim(session.view), () => this.loop.invalidate());
     this.picker = new Picker(this.viewport, session, () => this.enabled());
     this.outline = new Outline(this.viewport);
     const invalidate = (): void => this.loop.invalidate();
     this.flash = new Flash(this.viewport, session, (display, link) => this.objectsOf(display, link), invalidate);
-    this.marks = new InspectLayer(session, (display) => this.boundsOf(display), invalidate);
+    this.inspectLayer = new InspectLayer(session, (display) => this.boundsOf(display), invalidate);
     session.displays.isLoading = ({ id }) => this.drawings.get(id)?.drawing.settled?.() === false;
-    this.aids.add(this.focalShape.root);
-    this.viewport.scene.add(this.aids, this.marks.root, this.robotLight.root, this.backdrop.root);
+    this.overlays.add(this.focalShape.root);
+    this.viewport.scene.add(this.overlays, this.inspectLayer.root, this.robotLight.root, this.backdrop.root);
     this.listen();
     this.matchDisplays();
   }
 
-  /**
-   * Whether a frame with the robot or world, its meshes and its transforms was drawn, or transforms failed to arrive in
-   * time.
-   */
+  /** Whether robot or world, their meshes and transforms have been drawn, or transforms failed to arrive in time. */
   get ready(): boolean {
     const since = this.placelessSince;
-    return this.robotSettled || (since !== null && performance.now() - since > WAITS_FOR_PLACES_MS);
+    return this.robotSettled || (since !== null && performance.now() - since > POSE_TIMEOUT_MS);
   }
 
   /** Whether the last frame shows the current state, so that none is due. */
   get settled(): boolean {
-    return this.loop.settled && ![...this.drawings.values()].some(({ pacing }) => pacing.waiting);
+    return this.loop.settled && ![...this.drawings.values()].some(({ pacing }) => pacing.isWaiting);
   }
 
   /** The number of visuals of all robots drawn in the last frame. */
@@ -112,7 +109,7 @@ export class Stage {
 
   /** What is drawn of invisible properties, for tests. */
   get inspected(): object {
-    return this.marks.inspect();
+    return this.inspectLayer.inspect();
   }
 
   set focalShapeVisible(visible: boolean) {
@@ -123,9 +120,9 @@ export class Stage {
 
   /** Returns the scene as PNG, without marks of the selection and of camera motion. */
   async screenshot(scale: number): Promise<Blob | null> {
-    this.aids.visible = false;
+    this.overlays.visible = false;
     const screenshot = this.viewport.screenshot(scale);
-    this.aids.visible = true;
+    this.overlays.visible = true;
     this.draw(FINEST);
     return screenshot;
   }
@@ -137,20 +134,20 @@ export class Stage {
 
   /** Looks at the centre of the selection, or of all selectable objects if nothing is selected. */
   focusSelected(): void {
-    const middle = this.picker.middleOfSelection();
+    const middle = this.picker.centerOfSelection();
     if (middle) this.session.view.lookAt(middle);
   }
 
   /** Fits the whole selection, or everything if nothing is selected, into view from the current direction. */
   fit(): void {
     const box = this.picker.boundsOfSelection() ?? this.boundsOfAll();
-    if (box) this.session.view.fit(box, this.room.take());
+    if (box) this.session.view.fit(box, this.freeRoom.center());
   }
 
   /** Fits all robots into view from the current direction. */
   fitRobots(): void {
-    const box = this.shapeOfRobots();
-    if (box) this.session.view.fit(box, this.room.take());
+    const box = this.spanOfRobots();
+    if (box) this.session.view.fit(box, this.freeRoom.center());
   }
 
   /** Notifies the drawings of the state of the Interact tool. */
@@ -168,11 +165,11 @@ export class Stage {
   private listen(): void {
     const { session, loop } = this;
     const { displays, frames, view, selection } = session;
-    session.pace.software = this.viewport.software;
+    session.drawingPace.software = this.viewport.software;
     if (this.viewport.software !== null) loop.expectSlow();
-    loop.judged.on((late) => session.pace.frame(late));
-    session.pace.changed.on(() => {
-      this.viewport.foundSlow ||= session.pace.isSlow;
+    loop.judged.on((late) => session.drawingPace.countFrame(late));
+    session.drawingPace.changed.on(() => {
+      this.viewport.isSlow ||= session.drawingPace.isSlow;
       for (const display of displays.displays) this.propertiesChanged(display);
     });
     const invalidate = (): void => loop.invalidate();
@@ -188,7 +185,7 @@ export class Stage {
       drawn?.drawing.dataChanged?.(data);
       if (drawn?.display.enabled && !drawn.drawing.isElsewhere) loop.invalidate();
     });
-    session.data.forgotten.on(({ display, key }) => {
+    session.data.removed.on(({ display, key }) => {
       this.drawings.get(display)?.drawing.dataForgotten?.(key);
       loop.invalidate();
     });
@@ -198,12 +195,12 @@ export class Stage {
     selection.changed.on(() => this.selectionChanged());
     session.focus.hoverChanged.on(invalidate);
     session.time.wasReset.on(invalidate);
-    const dress = (theme: Theme): void => {
+    const applyTheme = (theme: Theme): void => {
       this.backdrop.theme = theme;
       invalidate();
     };
-    dress(this.theme.theme);
-    this.theme.changed.on(dress);
+    applyTheme(this.theme.theme);
+    this.theme.changed.on(applyTheme);
   }
 
   private matchDisplays(): void {
@@ -222,10 +219,10 @@ export class Stage {
       else if (Drawing && display.supported) {
         const { session, meshes, panels } = this;
         const invalidate = (): void => this.loop.invalidate();
-        const beside = (show: () => void): void => this.loop.beside(show);
+        const showWithFrame = (show: () => void): void => this.loop.schedule(show);
         const camera = (): Camera => this.viewport.camera;
         const affordsStudio = (): boolean => this.viewport.affordsStudio;
-        const drawing = new Drawing({ display, session, meshes, panels, invalidate, beside, camera, affordsStudio });
+        const drawing = new Drawing({ display, session, meshes, panels, invalidate, showWithFrame, camera, affordsStudio });
         this.drawings.set(display.id, { display, drawing, pacing: new Pacing(invalidate) });
         this.viewport.scene.add(drawing.root);
         drawing.interactionChanged?.(this.interaction);
@@ -234,7 +231,7 @@ export class Stage {
     }
     this.globalOptionsChanged();
     this.selectionChanged();
-    if (this.session.displays.known) this.loop.release();
+    if (this.session.displays.isKnown) this.loop.release();
   }
 
   private propertiesChanged(display: DisplayState): void {
@@ -258,7 +255,7 @@ export class Stage {
   private draw(detail: Detail): void {
     const { view } = this.session;
     this.viewport.share = detail.share;
-    frameMaps(this.enabled(), view, this.room);
+    frameMaps(this.enabled(), view, this.freeRoom);
     this.viewport.aim(view);
     this.focalShape.place(view);
     const { lighting } = this;
@@ -268,7 +265,7 @@ export class Stage {
     for (const { display, drawing, pacing } of this.drawings.values()) {
       drawing.root.visible = display.enabled;
       if (!display.enabled) continue;
-      if (pacing.due(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
+      if (pacing.isDue(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
       if (drawing.settled?.() === false) loading += ` ${display.id}`;
     }
     const settled = loading === "";
@@ -276,18 +273,18 @@ export class Stage {
       this.loading = loading;
       this.session.displays.statusChanged.emit(null);
     }
-    this.robotSettled ||= settled && [...this.robots(), ...this.worlds()].some((each) => each.isInPlace);
+    this.robotSettled ||= settled && [...this.robots(), ...this.worlds()].some((each) => each.hasPose);
     if (settled && this.session.robot !== null) this.placelessSince ??= now;
     this.lookFirst(settled);
-    const ownLight = this.worlds().find((world) => world.ownLight)?.ownLight ?? this.robotLight.shine(this.worlds().length > 0 ? "Camera" : lighting, this.robots(), this.backgroundColor);
+    const ownLight = this.worlds().find((world) => world.ownLight)?.ownLight ?? this.robotLight.update(this.worlds().length > 0 ? "Camera" : lighting, this.robots(), this.backgroundColor);
     this.backdrop.root.visible = this.session.displays.hasBackdrop && !hasOwnBackground(ownLight);
     this.viewport.light(ownLight);
-    this.marks.update();
+    this.inspectLayer.update();
     this.outline.set(this.selectedObjects());
     const isMoving = detail.moving && ownLight === null;
-    if (isMoving) for (const [, drawing] of this.enabled()) drawing.move?.(this.viewport.drawn);
+    if (isMoving) for (const [, drawing] of this.enabled()) drawing.simplify?.(this.viewport.drawn);
     this.viewport.render(detail.smooth);
-    if (isMoving) for (const [, drawing] of this.enabled()) drawing.move?.(null);
+    if (isMoving) for (const [, drawing] of this.enabled()) drawing.simplify?.(null);
     this.outline.render();
     this.flash.render();
     this.drawElsewhere();
@@ -302,22 +299,19 @@ export class Stage {
     return light === "Studio" || this.viewport.affordsStudio ? "Studio" : "Soft";
   }
 
-  /**
-   * Places the camera if no user has placed it: before the visible parts of the robot, or into a world once it is
-   * complete.
-   */
+  /** Places the camera if no user has: in front of the robot's visible parts, or into a world once it is complete. */
   private lookFirst(settled: boolean): void {
     const { view } = this.session;
     const [robots, [world]] = [this.robots(), this.worlds()];
-    if (robots.length === 0 && world?.isInPlace) {
+    if (robots.length === 0 && world?.hasPose) {
       if (settled) lookFirst(world, view, this.viewport.size);
     } else {
-      const seen = robots.flatMap((robot) => robot.seen || []).join(";");
+      const seen = robots.flatMap((robot) => robot.visibleKey || []).join(";");
       const fits = view.awaitsFit(seen);
       if (seen === "" || !(fits || view.awaitsSize)) return;
-      const box = this.shapeOfRobots();
-      if (box && fits) view.fitFirst(box, this.room.take(), seen);
-      if (box && settled) view.measured(box, Math.min(...robots.map((robot) => robot.ground())));
+      const box = this.spanOfRobots();
+      if (box && fits) view.fitFirst(box, this.freeRoom.center(), seen);
+      if (box && settled) view.reportSize(box, Math.min(...robots.map((robot) => robot.ground())));
     }
     this.viewport.aim(view);
   }
@@ -341,7 +335,7 @@ export class Stage {
   }
 
   /** Returns the bounding box of all robots, with sample points of their surfaces. */
-  private shapeOfRobots(): Span | null {
+  private spanOfRobots(): Span | null {
     const box = this.boundsOfRobots();
     const points = this.robots().flatMap((robot) => robot.visibleMeshes.flatMap((mesh) => pointsOn(mesh)));
     return box && points.length > 0 ? { ...box, points } : box;
@@ -357,19 +351,19 @@ export class Stage {
   /** Draws the displays that show the scene in their own panels. */
   private drawElsewhere(): void {
     const { renderer, scene } = this.viewport;
-    const view: DrawnScene = { renderer, scene, background: this.backgroundColor, showing: (accepts, draw) => this.showing(accepts, draw) };
-    for (const { display, drawing } of this.drawings.values()) if (display.enabled) drawing.drawn?.(view);
+    const view: DrawnScene = { renderer, scene, background: this.backgroundColor, withOnly: (accepts, draw) => this.withOnly(accepts, draw) };
+    for (const { display, drawing } of this.drawings.values()) if (display.enabled) drawing.afterFrame?.(view);
   }
 
-  private showing(accepts: (display: DisplayState) => boolean, draw: () => void): void {
-    const beside = [this.aids, this.backdrop.root, this.robotLight.root].filter((each) => each.visible);
-    for (const each of beside) each.visible = false;
+  private withOnly(accepts: (display: DisplayState) => boolean, draw: () => void): void {
+    const decorations = [this.overlays, this.backdrop.root, this.robotLight.root].filter((each) => each.visible);
+    for (const each of decorations) each.visible = false;
     for (const { display, drawing } of this.drawings.values()) {
       drawing.root.visible = display.enabled && accepts(display);
     }
     draw();
     for (const { display, drawing } of this.drawings.values()) drawing.root.visible = display.enabled;
-    for (const each of beside) each.visible = true;
+    for (const each of decorations) each.visible = true;
   }
 
   private selectionChanged(): void {

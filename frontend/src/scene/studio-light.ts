@@ -12,7 +12,7 @@ import {
 } from "three";
 
 /** The light intensity at which a surface facing the light has exactly its own colour. */
-export const FULL = Math.PI;
+export const FULL_INTENSITY = Math.PI;
 /** The intensity of the studio's lamp, and its direction in worlds. */
 export const STUDIO_KEY = 0.74;
 export const STUDIO_DIRECTION = new Vector3(0.45, 0.6, -1).normalize();
@@ -25,13 +25,13 @@ const SHADOW_PIXELS = 2048;
 /** The width of a shadow's edge in pixels of the map, which are small around a robot. */
 const [SHADOW_EDGE, ROBOT_SHADOW_EDGE] = [3, 8];
 /** The darkness of shadows on the ground. */
-const SHADOW = 0.35;
+const SHADOW_OPACITY = 0.35;
 /** The width of the ground that receives shadows, in sizes of the objects on it. */
 const GROUND_WIDTH = 6;
 
 /** Returns light from all directions, brighter from above. */
 export function studioSky(): HemisphereLight {
-  const sky = new HemisphereLight(0xffffff, 0xffffff, STUDIO_SKY * FULL);
+  const sky = new HemisphereLight(0xffffff, 0xffffff, STUDIO_SKY * FULL_INTENSITY);
   sky.groundColor.setScalar(STUDIO_GROUND / STUDIO_SKY);
   sky.position.set(0, 0, 1);
   return sky;
@@ -56,7 +56,7 @@ export function aimSun(light: DirectionalLight, direction: Vector3, middle: Vect
 }
 
 /** Sets whether objects cast and receive shadows. */
-export function shade(root: Object3D, shadowed: boolean): void {
+export function setShadowed(root: Object3D, shadowed: boolean): void {
   root.traverse((object) => {
     if (object instanceof Mesh) object.castShadow = object.receiveShadow = shadowed;
   });
@@ -65,10 +65,10 @@ export function shade(root: Object3D, shadowed: boolean): void {
 /** A lamp from the side, light from the sky, and a ground that is visible only in shadows. */
 export class StudioLight {
   readonly root = new Group();
-  private readonly key = new DirectionalLight(0xffffff, STUDIO_KEY * FULL);
+  private readonly key = new DirectionalLight(0xffffff, STUDIO_KEY * FULL_INTENSITY);
   private readonly ground = new Mesh(
     new PlaneGeometry(),
-    new ShadowMaterial({ opacity: SHADOW, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }),
+    new ShadowMaterial({ opacity: SHADOW_OPACITY, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }),
   );
 
   constructor() {
@@ -80,7 +80,7 @@ export class StudioLight {
   }
 
   /** Lights the objects in a box, in the fixed frame, on a ground at this height, m. */
-  shineOn(box: Box3, height: number): void {
+  update(box: Box3, height: number): void {
     this.ground.visible = !box.isEmpty();
     if (box.isEmpty()) return;
     const middle = box.getCenter(new Vector3());

@@ -26,17 +26,17 @@ type Rgb = readonly [number, number, number];
 type Sky = readonly [below: Rgb, middle: Rgb, above: Rgb];
 
 /** The pixels of a sky texture from the nadir to the zenith. */
-const HEIGHT = 64;
+const SKY_PIXELS = 64;
 /** How much brighter a backdrop is at its horizon. */
-const HORIZON = 0.18;
+const HORIZON_BRIGHTNESS = 0.18;
 const DAY: Sky = [[0.42, 0.44, 0.45], [0.8, 0.86, 0.92], [0.31, 0.52, 0.82]];
 const NIGHT: Sky = [[0.05, 0.05, 0.06], [0.1, 0.11, 0.17], [0.02, 0.03, 0.08]];
 
 /** Sets the surroundings of a scene, and keeps textures that do not change. */
 export class SkyAndFog {
   private sky: DataTexture | null = null;
-  private made: number | string | null = null;
-  private fogged = "";
+  private skyKey: number | string | null = null;
+  private fogKey = "";
 
   constructor(private readonly scene: Scene) {
     // Sky textures have y up.
@@ -46,16 +46,16 @@ export class SkyAndFog {
   /** Applies surroundings; `flat` for an orthographic camera, which sees the same colour of a sky everywhere. */
   set({ daylight, fog, backdrop = null }: Surroundings, flat: boolean): void {
     const wanted = daylight ?? backdrop;
-    if (wanted !== this.made) {
+    if (wanted !== this.skyKey) {
       this.sky?.dispose();
       this.sky = wanted === null ? null : skyTexture(typeof wanted === "number" ? skyAt(wanted) : skyOf(wanted));
-      this.made = wanted;
+      this.skyKey = wanted;
     }
     if (!flat) this.scene.background = this.sky;
     else this.scene.background = daylight === null ? null : new Color(...skyAt(daylight)[1]);
     const key = JSON.stringify(fog);
-    if (key === this.fogged) return;
-    this.fogged = key;
+    if (key === this.fogKey) return;
+    this.fogKey = key;
     this.scene.fog = fog ? fogOf(fog) : null;
   }
 }
@@ -78,7 +78,7 @@ function skyAt(daylight: number): Sky {
 function skyOf(color: string): Sky {
   const { r, g, b } = new Color(color);
   const own: Rgb = [r, g, b];
-  return [own, mix(own, [1, 1, 1], HORIZON), own];
+  return [own, mix(own, [1, 1, 1], HORIZON_BRIGHTNESS), own];
 }
 
 function mix(a: Rgb, b: Rgb, share: number): Rgb {
@@ -87,12 +87,12 @@ function mix(a: Rgb, b: Rgb, share: number): Rgb {
 }
 
 function skyTexture(sky: Sky): DataTexture {
-  const pixels = new Uint8Array(4 * HEIGHT);
-  for (let row = 0; row < HEIGHT; row++) {
-    const rgb = colorAt(Math.sin(((row + 0.5) / HEIGHT - 0.5) * Math.PI), sky);
+  const pixels = new Uint8Array(4 * SKY_PIXELS);
+  for (let row = 0; row < SKY_PIXELS; row++) {
+    const rgb = colorAt(Math.sin(((row + 0.5) / SKY_PIXELS - 0.5) * Math.PI), sky);
     pixels.set([...rgb.map((each) => Math.round(255 * each)), 255], 4 * row);
   }
-  const texture = new DataTexture(pixels, 1, HEIGHT);
+  const texture = new DataTexture(pixels, 1, SKY_PIXELS);
   texture.mapping = EquirectangularReflectionMapping;
   texture.magFilter = texture.minFilter = LinearFilter;
   texture.needsUpdate = true;

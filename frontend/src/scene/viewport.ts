@@ -25,9 +25,9 @@ const FAR_CLIP = 1000;
  * The largest ratio of the distance and the near clip distance; from farther away, the near clip distance grows,
  * because depths become imprecise.
  */
-const DEEPEST = 2000;
+const MAX_DEPTH_RATIO = 2000;
 /** The intensity of the camera's light while lights in the scene are used. */
-const FAINT = 0.15;
+const FAINT_LIGHT = 0.15;
 const NOTHING = { background: null, daylight: null, fog: null };
 /** The names of renderers that run on the CPU. */
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
@@ -42,20 +42,20 @@ export class Viewport {
   readonly scene = new Scene();
   private readonly perspective = new PerspectiveCamera((FIELD_OF_VIEW * 180) / Math.PI, 1, 0.01, FAR_CLIP);
   private readonly orthographic = new OrthographicCamera();
-  private inUse: PerspectiveCamera | OrthographicCamera = this.perspective;
+  private activeCamera: PerspectiveCamera | OrthographicCamera = this.perspective;
   readonly renderer: WebGLRenderer;
   private readonly smoothing = new Smoothing();
-  private part = 1;
+  private resolution = 1;
   /** The shift of the camera's centre to the left of the canvas's centre, pixels. */
-  aside = 0;
+  shiftLeft = 0;
   /** The shift of the camera's centre downwards, pixels. */
-  below = 0;
+  shiftDown = 0;
   private readonly ambient = new AmbientLight(0xffffff, AMBIENT * Math.PI);
-  private readonly around = new SkyAndFog(this.scene);
+  private readonly surroundings = new SkyAndFog(this.scene);
   private ownBackground = "#303030";
-  private drawnBy: string | null = null;
+  private rendererName: string | null = null;
   /** Whether frames were late. It stays set, because light that changes back and forth is worse than either light. */
-  foundSlow = false;
+  isSlow = false;
   private readonly headlight = new DirectionalLight(0xffffff, (1 - AMBIENT) * Math.PI);
 
   constructor(readonly container: HTMLElement, resized: () => void) {
@@ -71,10 +71,10 @@ export class Viewport {
     this.canvas.style.visibility = "hidden";
     container.prepend(this.canvas);
     new ResizeObserver(() => {
-      this.fit();
+      this.resize();
       resized();
     }).observe(container);
-    this.fit();
+    this.resize();
   }
 
   get canvas(): HTMLCanvasElement {
@@ -88,13 +88,13 @@ export class Viewport {
 
   /** Whether a light with shadows would not make the page slow: a GPU draws, and was not found slow. */
   get affordsStudio(): boolean {
-    return this.software === null && !this.foundSlow;
+    return this.software === null && !this.isSlow;
   }
 
   /** The name of a renderer on the CPU; null if a GPU draws. */
   get software(): string | null {
-    this.drawnBy ??= nameOfRenderer(this.renderer.getContext());
-    return SOFTWARE.test(this.drawnBy) ? (/SwiftShader|llvmpipe|softpipe|Basic Render/i.exec(this.drawnBy)?.[0] ?? this.drawnBy) : null;
+    this.rendererName ??= nameOfRenderer(this.renderer.getContext());
+    return SOFTWARE.test(this.rendererName) ? (/SwiftShader|llvmpipe|softpipe|Basic Render/i.exec(this.rendererName)?.[0] ?? this.rendererName) : null;
   }
 
   /**
@@ -102,36 +102,36 @@ export class Viewport {
    */
   light(own: OwnLight | null): void {
     const { renderer } = this;
-    this.headlight.intensity = (own ? FAINT : 1 - AMBIENT) * Math.PI;
+    this.headlight.intensity = (own ? FAINT_LIGHT : 1 - AMBIENT) * Math.PI;
     this.ambient.intensity = own ? 0 : AMBIENT * Math.PI;
     renderer.shadowMap.enabled = own?.shadows ?? false;
     renderer.setClearColor(new Color(own?.background ?? this.ownBackground));
-    this.around.set(own ?? NOTHING, this.inUse === this.orthographic);
+    this.surroundings.set(own ?? NOTHING, this.activeCamera === this.orthographic);
   }
 
   /** The current camera: views differ in their projection. */
   get camera(): PerspectiveCamera | OrthographicCamera {
-    return this.inUse;
+    return this.activeCamera;
   }
 
   /** Moves the camera to the pose of the view. */
   aim(view: ViewState): void {
     const seen = view.camera;
-    this.inUse = seen.scale === null ? this.perspective : this.orthographic;
+    this.activeCamera = seen.scale === null ? this.perspective : this.orthographic;
     this.project(seen, number(view.values, "Near Clip Distance", 0.01));
-    this.shift();
-    this.inUse.matrix
+    this.applyShift();
+    this.activeCamera.matrix
       .makeBasis(new Vector3(...seen.right), new Vector3(...seen.up), new Vector3(...seen.back))
       .setPosition(...seen.position);
-    this.inUse.updateMatrixWorld(true);
+    this.activeCamera.updateMatrixWorld(true);
     this.headlight.position.set(...seen.back);
   }
 
   /** The share of the screen's pixels drawn along each side; the size of the image on the page does not change. */
   set share(share: number) {
-    if (share === this.part) return;
-    this.part = share;
-    this.fit();
+    if (share === this.resolution) return;
+    this.resolution = share;
+    this.resize();
   }
 
   /** The size of the canvas, CSS pixels. */
@@ -141,7 +141,7 @@ export class Viewport {
 
   /** The camera of the next frame, and the height of the frame in its own pixels. */
   get drawn(): { camera: PerspectiveCamera | OrthographicCamera; height: number } {
-    return { camera: this.inUse, height: this.canvas.height };
+    return { camera: this.activeCamera, height: this.canvas.height };
   }
 
   /** Draws the scene; with antialiasing if `fine`. */
@@ -162,7 +162,7 @@ export class Viewport {
     this.render(true);
     // The frame is available only until the browser regains control.
     const screenshot = new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
-    this.fit();
+    this.resize();
     return screenshot;
   }
 
@@ -176,21 +176,21 @@ export class Viewport {
       return;
     }
     const distance = seen.focal ? distanceBetween(seen.position, seen.focal) : 0;
-    const clip = { near: Math.max(near, distance / DEEPEST), far: Math.max(FAR_CLIP, distance * 10) };
+    const clip = { near: Math.max(near, distance / MAX_DEPTH_RATIO), far: Math.max(FAR_CLIP, distance * 10) };
     Object.assign(perspective, { aspect: width / height, ...clip });
     perspective.updateProjectionMatrix();
   }
 
-  private shift(): void {
+  private applyShift(): void {
     const { width, height } = this.size;
-    if (this.aside !== 0 || this.below !== 0) this.inUse.setViewOffset(width, height, this.aside, -this.below, width, height);
-    else if (this.inUse.view?.enabled === true) this.inUse.clearViewOffset();
+    if (this.shiftLeft !== 0 || this.shiftDown !== 0) this.activeCamera.setViewOffset(width, height, this.shiftLeft, -this.shiftDown, width, height);
+    else if (this.activeCamera.view?.enabled === true) this.activeCamera.clearViewOffset();
   }
 
-  private fit(): void {
+  private resize(): void {
     const width = Math.max(1, this.container.clientWidth);
     const height = Math.max(1, this.container.clientHeight);
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, LARGEST_PIXEL_RATIO) * this.part);
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, LARGEST_PIXEL_RATIO) * this.resolution);
     this.renderer.setSize(width, height);
   }
 }

@@ -13,23 +13,23 @@ import {
 } from "three";
 import type { LightScene, WorldScene } from "../protocol";
 import type { PropertyRows } from "../state/properties";
-import { standsInScene, type Lighting } from "./light";
-import { aimSun, castShadows, FULL, shade, STUDIO_DIRECTION, STUDIO_KEY, studioSky } from "./studio-light";
+import { usesSceneLights, type Lighting } from "./light";
+import { aimSun, castShadows, FULL_INTENSITY, setShadowed, STUDIO_DIRECTION, STUDIO_KEY, studioSky } from "./studio-light";
 
 /** The maximum radius around the centre of the drawn objects in which shadows are drawn, m. */
-const LARGEST_RADIUS = 25;
+const MAX_SHADOW_RADIUS = 25;
 /** The assumed distance between a lamp and the objects that it lights, m. */
-const SEEN_FROM = 3;
+const TYPICAL_DISTANCE = 3;
 /** The maximum number of lights with shadows, each of which needs another rendering of the scene. */
-const MOST_SHADOWS = 2;
+const MAX_SHADOWS = 2;
 /** The maximum number of lights of a world, each of which costs time for every pixel. */
-const MOST_LIGHTS = 8;
+const MAX_LIGHTS = 8;
 
 /** The lights of a world, at their poses in the fixed frame. */
 export class WorldLights {
   readonly root = new Group();
   private placed: { light: Light; said: LightScene }[] = [];
-  private made = "";
+  private builtKey = "";
   private chosen: Lighting = "Camera";
   private shadowed = false;
 
@@ -43,8 +43,8 @@ export class WorldLights {
     this.chosen = said === "Studio" || said === "World" || said === "Camera" ? said : this.affordsStudio() ? "Studio" : "Soft";
     this.shadowed = this.isLit && rows.bool(true, "Shadows") && (this.chosen === "Studio" || scene.shadows);
     const key = [this.chosen, this.shadowed, scene.revision].join();
-    if (key === this.made) return;
-    this.made = key;
+    if (key === this.builtKey) return;
+    this.builtKey = key;
     this.clear();
     if (this.chosen === "Studio") this.buildStudio();
     else if (this.chosen === "World") this.buildWorld(scene);
@@ -52,7 +52,7 @@ export class WorldLights {
 
   /** Whether lights in the scene replace the camera's light. */
   get isLit(): boolean {
-    return standsInScene(this.chosen);
+    return usesSceneLights(this.chosen);
   }
 
   get lighting(): Lighting {
@@ -90,11 +90,11 @@ export class WorldLights {
 
   /** Sets whether objects cast and receive shadows. */
   shade(root: Object3D): void {
-    shade(root, this.shadowed);
+    setShadowed(root, this.shadowed);
   }
 
   /** Returns the lights in use, for tests. */
-  tell(): object {
+  inspect(): object {
     const shadows = this.placed.filter(({ light }) => light.castShadow).length;
     return { lighting: this.chosen, lights: this.placed.length, shadows };
   }
@@ -129,16 +129,16 @@ export class WorldLights {
 
   private buildWorld(scene: WorldScene): void {
     const [r = 0, g = 0, b = 0] = scene.ambient;
-    this.root.add(new AmbientLight(new Color(r, g, b), FULL));
-    for (const said of scene.lights.slice(0, MOST_LIGHTS)) this.add(lightOf(said), said);
+    this.root.add(new AmbientLight(new Color(r, g, b), FULL_INTENSITY));
+    for (const said of scene.lights.slice(0, MAX_LIGHTS)) this.add(lightOf(said), said);
   }
 
   private add(light: DirectionalLight | PointLight | SpotLight, said: LightScene): void {
     const [r = 0, g = 0, b = 0] = said.color;
     light.color.setRGB(r, g, b);
-    light.intensity = FULL * strength(said);
+    light.intensity = FULL_INTENSITY * strength(said);
     const shadows = this.placed.filter((each) => each.light.castShadow).length;
-    if (this.shadowed && said.shadows && shadows < MOST_SHADOWS && !(light instanceof PointLight)) {
+    if (this.shadowed && said.shadows && shadows < MAX_SHADOWS && !(light instanceof PointLight)) {
       castShadows(light);
     }
     this.root.add(light);
@@ -154,7 +154,7 @@ export class WorldLights {
       light.target.position.set(0, 0, 0);
       return;
     }
-    const radius = Math.min(box.getSize(new Vector3()).length() / 2, LARGEST_RADIUS);
+    const radius = Math.min(box.getSize(new Vector3()).length() / 2, MAX_SHADOW_RADIUS);
     aimSun(light, direction, box.getCenter(new Vector3()), radius);
   }
 }
@@ -163,7 +163,7 @@ export class WorldLights {
 function strength({ kind, range, fading }: LightScene): number {
   if (kind === "directional") return 1;
   const [constant = 1, linear = 0, quadratic = 0] = fading;
-  const distance = Math.min(range / 2, SEEN_FROM);
+  const distance = Math.min(range / 2, TYPICAL_DISTANCE);
   return Math.min(1, 1 / Math.max(constant + linear * distance + quadratic * distance ** 2, 1e-3));
 }
 

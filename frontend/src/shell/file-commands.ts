@@ -1,12 +1,12 @@
 import type { ConfigurationRefused, EditName } from "../protocol";
 import type { ConfigurationState } from "../state/configuration";
 import { strings } from "../strings";
-import { Dialog, tell } from "../widgets/dialog";
+import { Dialog, showNotice } from "../widgets/dialog";
 import { saveText } from "../widgets/save-file";
 import { FileDialog } from "./file-dialog";
 
 /** The maximum size of a file in bytes, so that it fits into a message to the server with its quotes escaped. */
-const LARGEST = 800_000;
+const MAX_BYTES = 800_000;
 const CONTENT_TYPE = "application/yaml";
 
 /** The commands on the configuration file, with questions before changes are lost. */
@@ -18,7 +18,7 @@ export class FileCommands {
   private dialog: FileDialog | null = null;
 
   constructor(private readonly state: ConfigurationState) {
-    state.refused.on((refusal) => this.refused(refusal));
+    state.refused.on((refusal) => this.onRefused(refusal));
     state.saved.on(() => {
       const next = this.afterSaving;
       this.afterSaving = null;
@@ -32,7 +32,7 @@ export class FileCommands {
   }
 
   begin(): void {
-    this.ask((discard) => this.state.begin(discard));
+    this.ask((discard) => this.state.newFile(discard));
   }
 
   open(path: string): void {
@@ -52,7 +52,7 @@ export class FileCommands {
     input.addEventListener("change", () => {
       const file = input.files?.[0];
       if (!file) return;
-      if (file.size > LARGEST) tell(strings.shell.refused, strings.shell.tooLarge(file.name));
+      if (file.size > MAX_BYTES) showNotice(strings.shell.refused, strings.shell.tooLarge(file.name));
       else void file.text().then((text) => this.ask((discard) => this.state.load(file.name, text, discard)));
     });
     input.click();
@@ -71,7 +71,7 @@ export class FileCommands {
   }
 
   download(): void {
-    this.state.askText();
+    this.state.requestText();
   }
 
   revert(): void {
@@ -104,7 +104,7 @@ export class FileCommands {
     what(false);
   }
 
-  private refused(refusal: ConfigurationRefused): void {
+  private onRefused(refusal: ConfigurationRefused): void {
     const words = strings.shell;
     switch (refusal.question) {
       case "unsaved":
@@ -118,7 +118,7 @@ export class FileCommands {
         break;
       case null:
         this.afterSaving = null;
-        if (this.dialog?.refused(refusal.message) !== true) tell(words.refused, refusal.message);
+        if (this.dialog?.showProblem(refusal.message) !== true) showNotice(words.refused, refusal.message);
         break;
     }
   }
@@ -126,7 +126,7 @@ export class FileCommands {
   private askToDiscard(): void {
     const words = strings.shell;
     const again = this.pending;
-    const goOn = (): undefined => {
+    const proceed = (): undefined => {
       again?.(true);
       return undefined;
     };
@@ -135,12 +135,12 @@ export class FileCommands {
       [words.unsavedQuestion(this.state.fileName ?? words.untitled)],
       [
         { label: words.cancel },
-        { label: words.discard, danger: true, run: goOn },
+        { label: words.discard, danger: true, run: proceed },
         {
           label: words.saveFirst,
           main: true,
           run: () => {
-            this.afterSaving = goOn;
+            this.afterSaving = proceed;
             this.save();
             return undefined;
           },

@@ -4,7 +4,7 @@ import type { Dock } from "../panels/dock/dock";
 import type { Session } from "../state/session";
 import { THEME_CHOICES, type ThemeState } from "../state/theme";
 import { changeLanguage, strings } from "../strings";
-import { Logo } from "../widgets/logo";
+import { logo } from "../widgets/logo";
 import { openMenu, type MenuEntry } from "../widgets/menu";
 import { keyText, SHORTCUTS } from "../widgets/shortcuts";
 import { editText, type FileCommands } from "./file-commands";
@@ -38,11 +38,11 @@ export class TitleBar {
       menuButton(words.panels, () => this.panelsMenu()),
       menuButton(strings.sharing.share, () => share.entries()),
     ];
-    walkWithArrows(menus);
+    bindArrowKeys(menus);
     this.element = h(
       "header",
       { class: "title-bar" },
-      Logo(),
+      logo(),
       h("span", { class: "brand" }, "Linkwright"),
       h("nav", { class: "menu-bar", aria: { label: words.menu } }, ...menus),
       this.undo,
@@ -163,7 +163,7 @@ function menuButton(label: string, entries: () => MenuEntry[]): HTMLButtonElemen
 }
 
 /** Moves between menus with left and right, and opens one with down. */
-function walkWithArrows(menus: readonly HTMLButtonElement[]): void {
+function bindArrowKeys(menus: readonly HTMLButtonElement[]): void {
   for (const [index, menu] of menus.entries()) {
     menu.addEventListener("keydown", (event) => {
       if (event.key === "ArrowRight") menus[(index + 1) % menus.length]?.focus();

@@ -17,7 +17,7 @@ export const MARK_COLORS: Readonly<Record<MarkName, string>> = {
 };
 
 /** Replaces the colours of a link's description. */
-export interface Instead {
+export interface LinkOverride {
   /** r g b, 0 to 1. */
   readonly color: readonly [number, number, number];
   /** Whether objects in the same place are drawn over the link. */
@@ -30,11 +30,11 @@ export interface Instead {
 export class ComparisonState {
   readonly changed = new Signal();
   private descriptions: ComparedDescriptions | null = null;
-  private marking = true;
+  private showsMarks = true;
 
   constructor(connection: Connection) {
-    connection.on("hello", () => this.take(null));
-    connection.on("compared_descriptions", (message) => this.take(message));
+    connection.on("hello", () => this.setDescriptions(null));
+    connection.on("compared_descriptions", (message) => this.setDescriptions(message));
   }
 
   /** The compared descriptions; null if only one is shown. */
@@ -44,21 +44,21 @@ export class ComparisonState {
 
   /** Whether links are coloured by their differences. */
   get marks(): boolean {
-    return this.marking;
+    return this.showsMarks;
   }
 
   set marks(marks: boolean) {
-    this.marking = marks;
+    this.showsMarks = marks;
     this.changed.emit();
   }
 
   /** Returns the look that replaces that of a link's description in a display; null to keep it. */
-  instead(display: string, link: string): Instead | null {
+  overrideOf(display: string, link: string): LinkOverride | null {
     const { descriptions } = this;
     if (!descriptions || display === "") return null;
     const isOld = display === descriptions.old.display;
     if (!isOld && display !== descriptions.new.display) return null;
-    const mark = this.marking ? (isOld ? descriptions.old : descriptions.new).marks[link] : undefined;
+    const mark = this.showsMarks ? (isOld ? descriptions.old : descriptions.new).marks[link] : undefined;
     if (isOld) return { color: rgb(MARK_COLORS[mark ?? "old"]), behind: true, firm: mark !== undefined };
     return mark ? { color: rgb(MARK_COLORS[mark]) } : null;
   }
@@ -82,7 +82,7 @@ export class ComparisonState {
     return display && item.element !== "" ? { display, kind: item.element_kind, name: item.element } : null;
   }
 
-  private take(message: ComparedDescriptions | null): void {
+  private setDescriptions(message: ComparedDescriptions | null): void {
     if (this.descriptions === null && message === null) return;
     this.descriptions = message;
     this.changed.emit();
@@ -96,7 +96,7 @@ export interface DifferenceGroup {
   readonly kind: ComparedItem["kind"];
 }
 
-export function grouped(items: readonly ComparedItem[]): DifferenceGroup[] {
+export function groupDifferences(items: readonly ComparedItem[]): DifferenceGroup[] {
   const groups: ComparedItem[][] = [];
   for (const item of items) {
     const last = groups.at(-1);

@@ -16,7 +16,7 @@ export class ConfigurationState {
   readonly refused = new Signal<ConfigurationRefused>();
   readonly texts = new Signal<ConfigurationText>();
   readonly folders = new Signal<Folder>();
-  readonly offered = new Signal<DisplayChoices>();
+  readonly choicesArrived = new Signal<DisplayChoices>();
   /** The displays that can be added, from the server's last answer. */
   choices: DisplayChoices | null = null;
   current: Configuration = {
@@ -41,7 +41,7 @@ export class ConfigurationState {
     connection.on("folder", (message) => this.folders.emit(message));
     connection.on("display_choices", (message) => {
       this.choices = message;
-      this.offered.emit(message);
+      this.choicesArrived.emit(message);
     });
   }
 
@@ -84,20 +84,20 @@ export class ConfigurationState {
   }
 
   /** Requests the displays that can be added, and those for each topic. */
-  askChoices(): void {
+  requestChoices(): void {
     this.connection.send({ type: "ask_display_choices" });
   }
 
-  askFolder(path: string | null): void {
+  requestFolder(path: string | null): void {
     this.connection.send({ type: "ask_folder", path });
   }
 
   /** Requests the text of the file as it would be saved now. */
-  askText(): void {
+  requestText(): void {
     this.connection.send({ type: "ask_configuration_text" });
   }
 
-  begin(discard = false): void {
+  newFile(discard = false): void {
     this.connection.send({ type: "new_configuration", discard });
   }
 

@@ -29,9 +29,9 @@ export class DescriptionModel {
       if (siblings) siblings.push(joint);
       else this.below.set(joint.parent, [joint]);
     }
-    this.measure();
-    for (const link of description.links) this.place("link", link.name, link.written);
-    for (const joint of description.joints) this.place("joint", joint.name, joint.written);
+    this.computeDepths();
+    for (const link of description.links) this.addRanges("link", link.name, link.written);
+    for (const joint of description.joints) this.addRanges("joint", joint.name, joint.written);
   }
 
   get display(): string {
@@ -57,7 +57,7 @@ export class DescriptionModel {
     return Math.max(0, ...this.depths.values());
   }
 
-  written(element: ElementName): Written | undefined {
+  placesOf(element: ElementName): Written | undefined {
     const from: ReadonlyMap<string, { written: Written }> = element.kind === "link" ? this.links : this.joints;
     return from.get(element.name)?.written;
   }
@@ -71,7 +71,7 @@ export class DescriptionModel {
     return here.filter(({ range }) => range.line <= line && line <= range.end_line).map(({ element }) => element);
   }
 
-  private measure(): void {
+  private computeDepths(): void {
     const pending: [string, number][] = [[this.description.root, 0]];
     for (let next = pending.pop(); next; next = pending.pop()) {
       const [link, depth] = next;
@@ -81,7 +81,7 @@ export class DescriptionModel {
     }
   }
 
-  private place(kind: "link" | "joint", name: string, { expanded, origin }: Written): void {
+  private addRanges(kind: "link" | "joint", name: string, { expanded, origin }: Written): void {
     for (const range of [expanded, origin]) {
       if (!range) continue;
       const entry = { range, element: { display: this.display, kind, name } };

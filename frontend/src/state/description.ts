@@ -4,7 +4,7 @@ import { Signal } from "../signal";
 import { DescriptionModel } from "./description-model";
 
 /** The links and joints that an edit on disk changed. */
-export interface Change {
+export interface EditedElements {
   readonly display: string;
   readonly links: readonly string[];
   readonly joints: readonly string[];
@@ -20,11 +20,11 @@ export class DescriptionState {
   /** The findings about the masses of a display's robot have arrived. */
   readonly findingsArrived = new Signal<string>();
   /** An edit changed links or joints. */
-  readonly edited = new Signal<Change>();
+  readonly edited = new Signal<EditedElements>();
   /** A text has arrived. */
   readonly textArrived = new Signal();
   /** The user asked for a place, such as that of a diagnostic or link; `name` is the file's name for users. */
-  readonly placeAsked = new Signal<{ file: string; line: number; display?: string; name?: string }>();
+  readonly placeRequested = new Signal<{ file: string; line: number; display?: string; name?: string }>();
   /** Texts that were read may have changed. */
   readonly textsOutdated = new Signal();
   private readonly revisions = new Map<string, number>();
@@ -43,7 +43,7 @@ export class DescriptionState {
         for (const display of known.keys()) if (!shown.has(display)) known.delete(display);
       }
     });
-    connection.on("description_changed", (message) => this.changed(message));
+    connection.on("description_changed", (message) => this.onChanged(message));
     connection.on("description", (message) => {
       const model = new DescriptionModel(message);
       this.models.set(message.display, model);
@@ -66,7 +66,7 @@ export class DescriptionState {
     this.modelHolders += 1;
     if (this.modelHolders === 1) {
       for (const [display, revision] of this.revisions) {
-        if (this.models.get(display)?.description.revision !== revision) this.ask("ask_description", display);
+        if (this.models.get(display)?.description.revision !== revision) this.request("ask_description", display);
       }
     }
     return once(() => (this.modelHolders -= 1));
@@ -77,7 +77,7 @@ export class DescriptionState {
     this.findingHolders += 1;
     if (this.findingHolders === 1) {
       for (const [display, revision] of this.revisions) {
-        if (this.findings.get(display)?.revision !== revision) this.ask("ask_inertia", display);
+        if (this.findings.get(display)?.revision !== revision) this.request("ask_inertia", display);
       }
     }
     return once(() => (this.findingHolders -= 1));
@@ -102,18 +102,18 @@ export class DescriptionState {
     return this.texts.get(key);
   }
 
-  private changed({ display, revision, links, joints }: DescriptionChanged): void {
+  private onChanged({ display, revision, links, joints }: DescriptionChanged): void {
     const isNew = this.revisions.get(display) !== revision;
     this.revisions.set(display, revision);
     if (isNew) {
       this.forgetTexts();
-      if (this.modelHolders > 0) this.ask("ask_description", display);
-      if (this.findingHolders > 0) this.ask("ask_inertia", display);
+      if (this.modelHolders > 0) this.request("ask_description", display);
+      if (this.findingHolders > 0) this.request("ask_inertia", display);
     }
     if (links.length + joints.length > 0) this.edited.emit({ display, links, joints });
   }
 
-  private ask(type: "ask_description" | "ask_inertia", display: string): void {
+  private request(type: "ask_description" | "ask_inertia", display: string): void {
     this.connection.send({ type, display });
   }
 

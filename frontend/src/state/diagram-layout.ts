@@ -1,7 +1,7 @@
 import type { JointDetails } from "../protocol";
 import type { DescriptionModel, ElementName } from "./description-model";
-import { general } from "./number-text";
-import { tidyTree, type TreeNode } from "./tidy-tree";
+import { formatGeneral } from "./number-text";
+import { layOutTree, type TreeNode } from "./tidy-tree";
 
 /** A box (link) or ellipse (joint) of the diagram; x and y of its centre, px. */
 export interface DiagramNode {
@@ -50,7 +50,7 @@ export function layOut(model: DescriptionModel, origins: boolean, measure: (text
     const element = { display: model.display, kind, name };
     return { id: `${kind} ${name}`, element, width, height, boxWidth, boxHeight, origin, children };
   };
-  const tree = tidyTree(build(model, origins, size), GAP_PX, LEVEL_GAP_PX);
+  const tree = layOutTree(buildTree(model, origins, size), GAP_PX, LEVEL_GAP_PX);
   const made = new Map<TreeNode, DiagramNode>();
   const nodes = tree.nodes.map(({ node, x, y, parent }) => {
     const { element, boxWidth, boxHeight, origin } = node as Sized;
@@ -64,7 +64,7 @@ export function layOut(model: DescriptionModel, origins: boolean, measure: (text
 }
 
 /** Builds the tree from the leaves up, without recursion, because descriptions may be chains of thousands of links. */
-function build(
+function buildTree(
   model: DescriptionModel,
   origins: boolean,
   size: (kind: ElementName["kind"], name: string, origin: readonly string[], children: readonly Sized[]) => Sized,
@@ -93,5 +93,5 @@ function build(
  * Returns the text of an origin as urdf_to_graphviz writes it: metres, and radians converted through the quaternion.
  */
 function originText({ xyz, rpy }: Pick<JointDetails, "xyz" | "rpy">): [string, string] {
-  return [`xyz: ${xyz.map(general).join(" ")}`, `rpy: ${rpy.map(general).join(" ")}`];
+  return [`xyz: ${xyz.map(formatGeneral).join(" ")}`, `rpy: ${rpy.map(formatGeneral).join(" ")}`];
 }

@@ -8,7 +8,7 @@ const GROUP = "rviz_common/Group";
 export type ShownLevel = StatusLevel | "loading";
 
 /** Returns the status rows that are not "ok", errors first. */
-export function troublesOf(status: readonly StatusRow[]): StatusRow[] {
+export function problemsOf(status: readonly StatusRow[]): StatusRow[] {
   return [...status.filter((row) => row.level === "error"), ...status.filter((row) => row.level === "warn")];
 }
 
@@ -36,8 +36,8 @@ export class DisplayState {
   }
 
   /** The status rows that are not "ok", errors first; empty while the display is disabled. */
-  get troubles(): StatusRow[] {
-    return this.enabled ? troublesOf(this.status) : [];
+  get problems(): StatusRow[] {
+    return this.enabled ? problemsOf(this.status) : [];
   }
 
   get enabledId(): string {
@@ -86,13 +86,13 @@ export class DisplaysState {
   /** A value changed; `display` is null for a global option. */
   readonly valueChanged = new Signal<{ node: PropertyNode; display: DisplayState | null }>();
   /** The user asked for the row of a display in the list. */
-  readonly rowAsked = new Signal<DisplayState>();
+  readonly rowRequested = new Signal<DisplayState>();
   readonly displays: DisplayState[] = [];
   globalOptions = new PropertyRows([]);
   globalStatus: readonly StatusRow[] = [];
   globalLevel: StatusLevel = "ok";
   /** Whether the server has sent the displays. */
-  known = false;
+  isKnown = false;
   /** Returns whether something of a display is still loading, such as its meshes; set by the scene. */
   isLoading: (display: DisplayState) => boolean = () => false;
   private owners = new Map<string, { node: PropertyNode; display: DisplayState | null }>();
@@ -113,8 +113,8 @@ export class DisplaysState {
     this.globalOptions = new PropertyRows(tree.global_options.map((property) => new PropertyNode(property)));
     this.globalStatus = tree.global_status;
     this.globalLevel = tree.global_level;
-    this.known = true;
-    this.index();
+    this.isKnown = true;
+    this.indexRows();
     this.treeChanged.emit();
   }
 
@@ -122,7 +122,7 @@ export class DisplaysState {
     const display = this.find(id);
     if (!display) return;
     display.setProperties(properties);
-    this.index();
+    this.indexRows();
     this.rowsChanged.emit(display);
   }
 
@@ -164,13 +164,13 @@ export class DisplaysState {
   }
 
   /** Returns the displays in a group, or the top-level ones for null, in their order. */
-  within(group: DisplayState | null): DisplayState[] {
+  childrenOf(group: DisplayState | null): DisplayState[] {
     return this.displays.filter((display) => display.group === group);
   }
 
   /** The number of enabled displays with an error; the global status counts as one. */
-  get failing(): number {
-    const all = [troublesOf(this.globalStatus), ...this.displays.map((each) => each.troubles)];
+  get failingCount(): number {
+    const all = [problemsOf(this.globalStatus), ...this.displays.map((each) => each.problems)];
     return all.filter(([worst]) => worst?.level === "error").length;
   }
 
@@ -187,7 +187,7 @@ export class DisplaysState {
     return this.globalOptions.text("Color", "Backdrop") !== "Color";
   }
 
-  private index(): void {
+  private indexRows(): void {
     this.owners = new Map();
     const add = (rows: PropertyRows, display: DisplayState | null): void => {
       for (const top of rows.nodes) for (const node of top.walk()) this.owners.set(node.id, { node, display });

@@ -1,10 +1,10 @@
 import { Signal } from "../signal";
 
 /** The number of recent frames that are judged. */
-const FRAMES = 60;
+const JUDGED_FRAMES = 60;
 /** Drawing is slow from this number of late frames on, and fast again from this number down. */
-const SLOW = 45;
-const FAST = 15;
+const SLOW_FROM = 45;
+const FAST_UP_TO = 15;
 
 /** Whether the page draws as fast as requested. Only frames that were due count; a low frame rate alone is not slow. */
 export class DrawingPace {
@@ -12,7 +12,7 @@ export class DrawingPace {
   readonly changed = new Signal();
   /** The name of the software renderer; null if a GPU draws. */
   software: string | null = null;
-  private readonly lates: boolean[] = [];
+  private readonly lateness: boolean[] = [];
   private slow = false;
 
   get isSlow(): boolean {
@@ -20,11 +20,11 @@ export class DrawingPace {
   }
 
   /** Counts a frame; `late` if it was drawn long after it was due, because the frames before took too long. */
-  frame(late: boolean): void {
-    this.lates.push(late);
-    if (this.lates.length > FRAMES) this.lates.shift();
-    const count = this.lates.filter(Boolean).length;
-    const slow = this.slow ? count > FAST : count >= SLOW;
+  countFrame(late: boolean): void {
+    this.lateness.push(late);
+    if (this.lateness.length > JUDGED_FRAMES) this.lateness.shift();
+    const count = this.lateness.filter(Boolean).length;
+    const slow = this.slow ? count > FAST_UP_TO : count >= SLOW_FROM;
     if (slow === this.slow) return;
     this.slow = slow;
     this.changed.emit();

@@ -1,7 +1,7 @@
 import type { RobotScene } from "../protocol";
 import { Signal } from "../signal";
 import type { ElementName } from "./description-model";
-import type { Kept } from "./kept";
+import type { PageMemory } from "./kept";
 import type { SelectionState } from "./selection";
 
 /**
@@ -25,8 +25,8 @@ export class ElementFocus {
   }
 
   /** Preserves the selected joint across reloads of the page. */
-  keep(kept: Kept): void {
-    kept.part("joint", () => this.joint, (joint) => (this.joint = joint));
+  preserveIn(kept: PageMemory): void {
+    kept.preserve("joint", () => this.joint, (joint) => (this.joint = joint));
   }
 
   get current(): ElementName | null {
@@ -51,7 +51,7 @@ export class ElementFocus {
   }
 
   setHovered(element: ElementName | null): void {
-    if (same(element, this.hover)) return;
+    if (isSameElement(element, this.hover)) return;
     this.hover = element;
     this.hoverChanged.emit();
   }
@@ -64,6 +64,6 @@ export class ElementFocus {
   }
 }
 
-export function same(a: ElementName | null, b: ElementName | null): boolean {
+export function isSameElement(a: ElementName | null, b: ElementName | null): boolean {
   return a === b || (a !== null && b !== null && a.display === b.display && a.kind === b.kind && a.name === b.name);
 }

@@ -27,7 +27,7 @@ export class FrameStore {
   fixedFrame = "";
   private revision = -1;
   private rows = new Map<string, number>();
-  private early: Transforms | null = null;
+  private pending: Transforms | null = null;
 
   setTable(table: FrameTable): void {
     const before = this.rows;
@@ -45,8 +45,8 @@ export class FrameStore {
       this.ages[row] = ages[old] ?? 0;
     }
     this.tableChanged.emit();
-    if (this.early?.revision === table.revision) this.apply(this.early);
-    this.early = null;
+    if (this.pending?.revision === table.revision) this.apply(this.pending);
+    this.pending = null;
   }
 
   /**
@@ -54,7 +54,7 @@ export class FrameStore {
    */
   setTransforms(transforms: Transforms): void {
     if (transforms.revision === this.revision) this.apply(transforms);
-    else if (transforms.revision > this.revision) this.early = transforms;
+    else if (transforms.revision > this.revision) this.pending = transforms;
   }
 
   /** Returns the row of a frame, or -1. */
@@ -67,7 +67,7 @@ export class FrameStore {
   }
 
   /** Returns the distance of two frames: the largest difference of their coordinates in m or quaternion components. */
-  apart(one: string, other: string): number {
+  difference(one: string, other: string): number {
     const [a, b] = [this.row(one), this.row(other)];
     if (!this.has(a) || !this.has(b)) return Infinity;
     let most = 0;

@@ -48,7 +48,7 @@ export class InspectState {
   }
 
   /** Whether any choice is on. */
-  get any(): boolean {
+  get isActive(): boolean {
     return Object.values(this.shown).some(Boolean);
   }
 

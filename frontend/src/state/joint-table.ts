@@ -1,6 +1,6 @@
 import type { JointDetails } from "../protocol";
 import type { AngleUnits } from "./angle-unit";
-import { general } from "./number-text";
+import { formatGeneral } from "./number-text";
 
 export const COLUMNS = [
   "name",
@@ -26,7 +26,7 @@ interface Words {
 }
 
 /** Returns the texts of a joint's row. */
-export function cells(joint: JointDetails, angles: AngleUnits, words: Words): Record<Column, string> {
+export function cellTexts(joint: JointDetails, angles: AngleUnits, words: Words): Record<Column, string> {
   const scale = angles.scale(joint.kind);
   const unit = joint.kind === "prismatic" ? "m" : angles.current;
   const moves = joint.kind !== "fixed";
@@ -65,17 +65,17 @@ export function mimicText(joint: string, multiplier: number, offset: number, uni
 }
 
 /** Returns joints sorted by a column: numbers by their value, joints without one last. */
-export function sorted(joints: readonly JointDetails[], column: Column, descending: boolean): JointDetails[] {
+export function sortJoints(joints: readonly JointDetails[], column: Column, descending: boolean): JointDetails[] {
   const way = descending ? -1 : 1;
   return [...joints].sort((a, b) => {
     const [x, y] = [value(a, column), value(b, column)];
     if (x === null || y === null) return Number(x === null) - Number(y === null);
-    const order = typeof x === "number" && typeof y === "number" ? x - y : collator.compare(String(x), String(y));
+    const order = typeof x === "number" && typeof y === "number" ? x - y : COLLATOR.compare(String(x), String(y));
     return order * way;
   });
 }
 
-const collator = new Intl.Collator("en", { numeric: true });
+const COLLATOR = new Intl.Collator("en", { numeric: true });
 
 function value(joint: JointDetails, column: Column): number | string | null {
   switch (column) {
@@ -101,5 +101,5 @@ function value(joint: JointDetails, column: Column): number | string | null {
 
 /** Rounds to four significant digits, which fit into a table. */
 function rounded(value: number): string {
-  return general(Number(value.toPrecision(4)));
+  return formatGeneral(Number(value.toPrecision(4)));
 }

@@ -1,10 +1,10 @@
 import type { Connection } from "../connection/connection";
 import type { JointControl } from "../protocol";
 import { Signal } from "../signal";
-import type { Kept } from "./kept";
+import type { PageMemory } from "./kept";
 
 /** The maximum number of joints in one message, because the server accepts messages of 64 KiB. */
-const MOST_AT_ONCE = 200;
+const MAX_PER_MESSAGE = 200;
 
 export type Positions = Readonly<Record<string, number>>;
 
@@ -16,12 +16,12 @@ export class JointsState {
   controls: readonly JointControl[] | null = null;
   positions: Positions = {};
   /** Whether links can be dragged without Alt. */
-  handsOn = false;
-  private waiting: Record<string, number> | null = null;
+  dragsWithoutAlt = false;
+  private pending: Record<string, number> | null = null;
   /** The latest joints, also after the program has ended. */
   private latest: readonly JointControl[] = [];
   /** The joint positions from before a restart of the program, until the new program has sliders. */
-  private lost: Positions = {};
+  private beforeRestart: Positions = {};
 
   constructor(
     private readonly connection: Connection,
@@ -32,8 +32,8 @@ export class JointsState {
   }
 
   /** Preserves across reloads of the page whether links can be dragged without Alt. */
-  keep(kept: Kept): void {
-    kept.part("hands on", () => this.handsOn, (on) => (this.handsOn = on));
+  preserveIn(kept: PageMemory): void {
+    kept.preserve("hands on", () => this.dragsWithoutAlt, (on) => (this.dragsWithoutAlt = on));
   }
 
   /**
@@ -41,15 +41,15 @@ export class JointsState {
    * together.
    */
   move(positions: Positions): void {
-    if (this.waiting) {
-      Object.assign(this.waiting, positions);
+    if (this.pending) {
+      Object.assign(this.pending, positions);
       return;
     }
     this.send(positions);
-    this.waiting = {};
+    this.pending = {};
     this.nextFrame(() => {
-      const late = this.waiting ?? {};
-      this.waiting = null;
+      const late = this.pending ?? {};
+      this.pending = null;
       if (Object.keys(late).length > 0) this.move(late);
     });
   }
@@ -73,7 +73,7 @@ export class JointsState {
   programRestarted(isSame: boolean): void {
     const moved = this.latest.filter(({ name, mimic, zero }) => mimic === null && this.positions[name] !== zero);
     const before = moved.map(({ name }) => [name, this.positions[name]]).filter(([, position]) => position !== undefined);
-    this.lost = isSame ? { ...this.lost, ...(Object.fromEntries(before) as Positions) } : {};
+    this.beforeRestart = isSame ? { ...this.beforeRestart, ...(Object.fromEntries(before) as Positions) } : {};
   }
 
   private setControls(controls: readonly JointControl[] | null): void {
@@ -82,8 +82,8 @@ export class JointsState {
     if (controls === null || controls.length === 0) return;
     this.latest = controls;
     const known = new Set(controls.map(({ name }) => name));
-    const found = Object.entries(this.lost).filter(([name]) => known.has(name));
-    this.lost = {};
+    const found = Object.entries(this.beforeRestart).filter(([name]) => known.has(name));
+    this.beforeRestart = {};
     this.send(Object.fromEntries(found));
   }
 
@@ -99,8 +99,8 @@ export class JointsState {
       this.connection.send({ type: "set_joint", name: only[0], position: only[1] });
       return;
     }
-    for (let i = 0; i < entries.length; i += MOST_AT_ONCE) {
-      const part = Object.fromEntries(entries.slice(i, i + MOST_AT_ONCE));
+    for (let i = 0; i < entries.length; i += MAX_PER_MESSAGE) {
+      const part = Object.fromEntries(entries.slice(i, i + MAX_PER_MESSAGE));
       this.connection.send({ type: "set_joints", positions: part });
     }
   }

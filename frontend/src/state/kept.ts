@@ -7,12 +7,12 @@ import type { BrowserStorage } from "../storage";
 const KEY = `linkwright.kept.${PROTOCOL_VERSION}`;
 
 /** State that survives the reload of the page when the user chooses another language. */
-export class Kept {
+export class PageMemory {
   private readonly parts = new Map<string, () => unknown>();
-  private readonly found: Readonly<Record<string, unknown>>;
+  private readonly previous: Readonly<Record<string, unknown>>;
 
   constructor(private readonly storage: Omit<BrowserStorage, "lasts">) {
-    this.found = JSON.parse(storage.getItem(KEY) ?? "{}") as Record<string, unknown>;
+    this.previous = JSON.parse(storage.getItem(KEY) ?? "{}") as Record<string, unknown>;
     storage.removeItem(KEY);
   }
 
@@ -20,13 +20,13 @@ export class Kept {
    * Registers a part of the state: calls `restore` with the previous page's value of this name, if any, and `read` when
    * this page is left.
    */
-  part<T>(name: string, read: () => T, take: (value: T) => void): void {
+  preserve<T>(name: string, read: () => T, restore: (value: T) => void): void {
     this.parts.set(name, read);
-    if (name in this.found) take(this.found[name] as T);
+    if (name in this.previous) restore(this.previous[name] as T);
   }
 
   /** Stores all parts, because the page is about to be reloaded. */
-  leave(): void {
+  store(): void {
     this.storage.setItem(KEY, JSON.stringify(Object.fromEntries([...this.parts].map(([name, read]) => [name, read()]))));
   }
 }

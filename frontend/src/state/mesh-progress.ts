@@ -1,7 +1,7 @@
 import { Signal } from "../signal";
 
 /** Loads that take less time are not shown. */
-const TOLD_AFTER_MS = 500;
+const SHOWN_AFTER_MS = 500;
 /** Files of at least this size are shown before they are read, because reading blocks the page. */
 const LARGE_BYTES = 4_000_000;
 
@@ -32,22 +32,22 @@ export class MeshProgress {
       this.shown.add(load);
       this.changed.emit();
     };
-    const timer = setTimeout(show, TOLD_AFTER_MS);
+    const timer = setTimeout(show, SHOWN_AFTER_MS);
     const tell = (): void => {
       if (this.shown.has(load)) this.changed.emit();
     };
     return {
-      came: (bytes, total) => {
+      received: (bytes, total) => {
         Object.assign(load, { bytes, total });
         tell();
       },
-      reads: async () => {
+      startReading: async () => {
         load.stage = "reading";
         if (load.bytes >= LARGE_BYTES) show();
         tell();
-        if (this.shown.has(load)) await painted();
+        if (this.shown.has(load)) await afterPaint();
       },
-      ended: () => {
+      end: () => {
         clearTimeout(timer);
         if (this.shown.delete(load)) this.changed.emit();
       },
@@ -58,15 +58,15 @@ export class MeshProgress {
 /** The functions with which a loader reports the progress of a file. */
 export interface LoadReport {
   /** Reports the number of bytes received so far. */
-  came(bytes: number, total: number | null): void;
+  received(bytes: number, total: number | null): void;
   /** Reports that all bytes are received. Resolves once the page shows that, because reading blocks painting. */
-  reads(): Promise<void>;
+  startReading(): Promise<void>;
   /** Reports that the file is loaded, or failed to load. */
-  ended(): void;
+  end(): void;
 }
 
 /** Resolves once the page was painted, or after a while, because a hidden page is not painted. */
-function painted(): Promise<void> {
+function afterPaint(): Promise<void> {
   return new Promise((resolve) => {
     const timer = setTimeout(resolve, 200);
     requestAnimationFrame(() =>

@@ -18,7 +18,7 @@ export class PoseStore {
 
   constructor(private readonly storage: TextStorage) {}
 
-  of(robot: string): readonly NamedPose[] {
+  posesOf(robot: string): readonly NamedPose[] {
     try {
       const known: unknown = JSON.parse(this.storage.getItem(KEY + robot) ?? "[]");
       return Array.isArray(known) ? known.filter(isPose) : [];
@@ -29,12 +29,12 @@ export class PoseStore {
 
   /** Stores poses, replacing those with the same name. */
   save(robot: string, ...poses: readonly NamedPose[]): void {
-    const all = new Map([...this.of(robot), ...poses].map((pose) => [pose.name, pose]));
+    const all = new Map([...this.posesOf(robot), ...poses].map((pose) => [pose.name, pose]));
     this.write(robot, [...all.values()]);
   }
 
   remove(robot: string, name: string): void {
-    this.write(robot, this.of(robot).filter((pose) => pose.name !== name));
+    this.write(robot, this.posesOf(robot).filter((pose) => pose.name !== name));
   }
 
   private write(robot: string, poses: readonly NamedPose[]): void {
@@ -44,7 +44,7 @@ export class PoseStore {
 }
 
 /** Returns poses as group states of an SRDF file, which MoveIt reads, too. */
-export function srdfOf(robot: string, poses: readonly NamedPose[]): string {
+export function toSrdf(robot: string, poses: readonly NamedPose[]): string {
   const states = poses.map(({ name, positions }) => {
     const joints = Object.entries(positions).map(
       ([joint, value]) => `    <joint name="${escaped(joint)}" value="${String(value)}"/>`,
@@ -58,7 +58,7 @@ export function srdfOf(robot: string, poses: readonly NamedPose[]): string {
  * Returns the group states of an SRDF file. States of several groups with the same name become several poses; joints
  * with several values are omitted.
  */
-export function posesOf(srdf: string): NamedPose[] {
+export function fromSrdf(srdf: string): NamedPose[] {
   const text = srdf.replace(/<!--[\s\S]*?-->/g, "");
   const poses = new Map<string, NamedPose>();
   for (const [, tag = "", inside = ""] of text.matchAll(/<group_state\b([^>]*)>([\s\S]*?)<\/group_state\s*>/g)) {
@@ -75,7 +75,7 @@ export function posesOf(srdf: string): NamedPose[] {
 }
 
 /** Whether the joints are at the positions of a pose, as far as it sets them. */
-export function standsAs(pose: NamedPose, positions: Readonly<Record<string, number>>): boolean {
+export function matchesPose(pose: NamedPose, positions: Readonly<Record<string, number>>): boolean {
   return Object.entries(pose.positions).every(([name, value]) => {
     const position = positions[name];
     return position === undefined || Math.abs(position - value) < 1e-6;

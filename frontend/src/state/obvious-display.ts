@@ -7,10 +7,10 @@ import type { TopicChoice } from "../protocol";
  */
 export function obviousDisplay({ topic, message, classes }: TopicChoice): string | null {
   const type = shortName(message);
-  const called = classes.filter((cls) => type.includes(shortName(cls)));
-  const [closest] = called.sort((a, b) => shortName(b).length - shortName(a).length);
-  const spoken = classes.find((cls) => topic.includes(firstWord(shortName(cls))));
-  return closest ?? spoken ?? classes[0] ?? null;
+  const byType = classes.filter((cls) => type.includes(shortName(cls)));
+  const [closest] = byType.sort((a, b) => shortName(b).length - shortName(a).length);
+  const byTopic = classes.find((cls) => topic.includes(firstWord(shortName(cls))));
+  return closest ?? byTopic ?? classes[0] ?? null;
 }
 
 /** Returns the first word, such as `robot` for RobotModel. */

@@ -10,17 +10,17 @@ export class RecordingControl {
   /** A request of this page failed, or its recording ended early; the value is the reason. */
   readonly refused = new Signal<string>();
   /** The user asked to view a finished recording. */
-  readonly wanted = new Signal<RecordedFile>();
+  readonly viewRequested = new Signal<RecordedFile>();
   private latest: RecordingState | null = null;
-  private asked = false;
+  private hasRequested = false;
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
       this.latest = null;
-      this.asked = false;
+      this.hasRequested = false;
       this.changed.emit();
     });
-    connection.on("recording_state", (state) => this.take(state));
+    connection.on("recording_state", (state) => this.setState(state));
   }
 
   /** Whether topics can be recorded, which is not the case while a recording is shown. */
@@ -63,32 +63,32 @@ export class RecordingControl {
 
   /** Records the given topics; an empty list means all current and future topics. */
   record(topics: readonly string[]): void {
-    this.asked = true;
+    this.hasRequested = true;
     this.connection.send({ type: "record_topics", topics: [...topics] });
   }
 
   stop(): void {
-    this.asked = true;
+    this.hasRequested = true;
     this.connection.send({ type: "stop_recording" });
   }
 
   /** Saves the history between two times, s since the epoch; null for its start or end. */
   save(start: number | null, end: number | null): void {
-    this.asked = true;
+    this.hasRequested = true;
     this.connection.send({ type: "save_minutes", start, end });
   }
 
-  private take(state: RecordingState): void {
+  private setState(state: RecordingState): void {
     const before = this.latest;
     this.latest = state;
     this.changed.emit();
-    if (!this.asked || before === null) return;
+    if (!this.hasRequested || before === null) return;
     const [newest] = state.files;
     if (state.problem !== "" && state.problem !== before.problem) {
-      this.asked = this.isRecording;
+      this.hasRequested = this.isRecording;
       this.refused.emit(state.problem);
     } else if (newest && newest.url !== before.files[0]?.url) {
-      this.asked = this.isRecording;
+      this.hasRequested = this.isRecording;
       this.made.emit(newest);
     }
   }

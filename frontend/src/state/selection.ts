@@ -1,6 +1,6 @@
 import type { LinkScene, RobotScene } from "../protocol";
 import { Signal } from "../signal";
-import type { Kept } from "./kept";
+import type { PageMemory } from "./kept";
 
 /** An object of a display: a link, a marker, a point; `key` identifies it in the display's drawing. */
 export interface SelectedItem {
@@ -29,8 +29,8 @@ export class SelectionState {
   constructor(private readonly robots: ReadonlyMap<string, RobotScene>) {}
 
   /** Preserves the selection across reloads of the page. */
-  keep(kept: Kept): void {
-    kept.part("selection", () => this.current, (items) => (this.current = items));
+  preserveIn(kept: PageMemory): void {
+    kept.preserve("selection", () => this.current, (items) => (this.current = items));
   }
 
   get items(): readonly SelectedItem[] {
@@ -53,23 +53,23 @@ export class SelectionState {
       else next.set(identity(item), item);
     }
     const same = next.size === this.current.length && this.current.every((item) => next.has(identity(item)));
-    if (!same) this.take([...next.values()]);
+    if (!same) this.setItems([...next.values()]);
   }
 
   /** Deselects objects that their display no longer shows. */
-  drop(isThere: (item: SelectedItem) => boolean): void {
-    const left = this.current.filter(isThere);
-    if (left.length < this.current.length) this.take(left);
+  retain(exists: (item: SelectedItem) => boolean): void {
+    const left = this.current.filter(exists);
+    if (left.length < this.current.length) this.setItems(left);
   }
 
   robotChanged(robot: RobotScene): void {
     const mine = this.current.filter((item) => item.display === robot.display);
     if (mine.length === 0) return;
     const links = new Set(robot.links.map((link) => link.name));
-    this.take(this.current.filter((item) => item.display !== robot.display || links.has(item.key)));
+    this.setItems(this.current.filter((item) => item.display !== robot.display || links.has(item.key)));
   }
 
-  private take(items: readonly SelectedItem[]): void {
+  private setItems(items: readonly SelectedItem[]): void {
     this.current = items;
     this.link = null;
     for (const { display, key } of items) {

@@ -14,7 +14,7 @@ import { ElementFocus } from "./element-focus";
 import { FrameStore } from "./frames";
 import { InspectState } from "./inspect";
 import { JointsState } from "./joints";
-import { Kept } from "./kept";
+import { PageMemory } from "./kept";
 import { MeshProgress } from "./mesh-progress";
 import { Modelling } from "./modelling/modelling";
 import { MonitorState } from "./monitor/monitor";
@@ -52,7 +52,7 @@ export class Session {
   readonly slowLine: SlowLine;
   readonly slowness: Slowness;
   readonly meshProgress = new MeshProgress();
-  readonly pace = new DrawingPace();
+  readonly drawingPace = new DrawingPace();
   readonly simulation: SimulationState;
   readonly modelling: Modelling;
   readonly editing: EditingState;
@@ -67,7 +67,7 @@ export class Session {
   readonly inspect = new InspectState(browserStorage());
   readonly poses = new PoseStore(browserStorage());
   readonly angles = new AngleUnits(browserStorage());
-  readonly kept = new Kept(browserStorage("sessionStorage"));
+  readonly memory = new PageMemory(browserStorage("sessionStorage"));
   readonly monitor: MonitorState;
   readonly voice: VoiceState;
   readonly words: WordsState;
@@ -84,7 +84,7 @@ export class Session {
     this.comparison = new ComparisonState(connection);
     this.data = new DisplayDataStore(connection);
     this.slowLine = new SlowLine(this.data);
-    this.slowness = new Slowness(this.slowLine, this.pace, connection);
+    this.slowness = new Slowness(this.slowLine, this.drawingPace, connection);
     this.simulation = new SimulationState(connection);
     this.modelling = new Modelling(connection, browserStorage());
     this.editing = new EditingState(connection, browserStorage());
@@ -99,14 +99,14 @@ export class Session {
     };
     this.displays.treeChanged.on(followFixedFrame);
     this.displays.valueChanged.on(followFixedFrame);
-    this.keep();
+    this.registerState();
   }
 
   /** Registers the state that only this page has, to preserve it across a reload. */
-  private keep(): void {
-    const { kept } = this;
-    kept.part("program", () => this.program, (program) => (this.program = program));
-    for (const each of [this.view, this.selection, this.focus, this.tools, this.joints]) each.keep(kept);
+  private registerState(): void {
+    const { memory } = this;
+    memory.preserve("program", () => this.program, (program) => (this.program = program));
+    for (const each of [this.view, this.selection, this.focus, this.tools, this.joints]) each.preserveIn(memory);
   }
 
   /** Applies a user's edit of a property: shows it immediately, and sends it to the server. */
@@ -125,7 +125,7 @@ export class Session {
   }
 
   /** Keeps joint positions and camera when the program was restarted, unless it shows something else now. */
-  private greet(hello: Hello): void {
+  private onHello(hello: Hello): void {
     const before = this.program;
     this.program = hello;
     if (before !== null && before.run !== hello.run) {
@@ -137,11 +137,11 @@ export class Session {
   }
 
   private listen(connection: Connection): void {
-    connection.on("hello", (message) => this.greet(message));
+    connection.on("hello", (message) => this.onHello(message));
     connection.on("tree", (message) => {
       this.displays.setTree(message);
       for (const id of this.robots.keys()) if (!this.displays.find(id)) this.robots.delete(id);
-      this.selection.drop(({ display }) => this.displays.find(display) !== undefined);
+      this.selection.retain(({ display }) => this.displays.find(display) !== undefined);
     });
     connection.on("display_properties", ({ display, properties }) => this.displays.setRows(display, properties));
     connection.on("property_changed", ({ id, value, options }) => this.displays.setValue(id, value, options));

@@ -10,7 +10,7 @@ export class SimulationState {
   /** A model that this page requested was added to the world; the value is its name. */
   readonly added = new Signal<string>();
   /** The user asked to add a model at a position in the world, m. */
-  readonly spawnAsked = new Signal<readonly number[]>();
+  readonly spawnRequested = new Signal<readonly number[]>();
   /** Returns a free position for a model in the world, m; the drawing of a world replaces this function. */
   freePlace: () => readonly number[] = () => [0, 0, 0];
   private status: SimulationStatus | null = null;

@@ -24,7 +24,7 @@ export class TimeControlState {
   sources: readonly string[] = [];
   private clock: Clock | null = null;
   private clockAt = 0;
-  private watching = false;
+  private isWatching = false;
 
   constructor(
     private readonly connection: Connection,
@@ -42,7 +42,7 @@ export class TimeControlState {
     connection.on("time_reset", () => this.wasReset.emit());
     // The server does not know this page's subscriptions after a reconnect.
     connection.on("hello", () => {
-      if (this.watching) connection.send({ type: "watch_clock", watching: true });
+      if (this.isWatching) connection.send({ type: "watch_clock", watching: true });
     });
   }
 
@@ -58,8 +58,8 @@ export class TimeControlState {
 
   /** Starts or stops the server's reports of the clocks. */
   watch(watching: boolean): void {
-    if (watching === this.watching) return;
-    this.watching = watching;
+    if (watching === this.isWatching) return;
+    this.isWatching = watching;
     this.connection.send({ type: "watch_clock", watching });
   }
 

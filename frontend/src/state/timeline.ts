@@ -16,11 +16,11 @@ export class TimelineState {
   readonly moved = new Signal();
   private recording: Timeline | null = null;
   private playhead: Playhead | null = null;
-  private extentNow: HistoryExtent | null = null;
+  private historyExtent: HistoryExtent | null = null;
   /** The time to which the user moved, s; shown until the server reaches it. */
   private target: number | null = null;
-  private asked = false;
-  private wanted = 0;
+  private isSeeking = false;
+  private requestedPosition = 0;
   private marked: Span | null = null;
   /** The topic by whose messages to step; empty for all topics shown. */
   stepTopic = "";
@@ -28,8 +28,8 @@ export class TimelineState {
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
       // A new connection has no pending requests, and reports a timeline only if there is one.
-      this.recording = this.playhead = this.extentNow = this.target = this.marked = null;
-      this.asked = false;
+      this.recording = this.playhead = this.historyExtent = this.target = this.marked = null;
+      this.isSeeking = false;
       this.stepTopic = "";
       this.changed.emit();
     });
@@ -38,11 +38,11 @@ export class TimelineState {
       this.changed.emit();
     });
     connection.on("history_extent", (extent) => {
-      this.extentNow = extent;
+      this.historyExtent = extent;
       if (this.recording?.live) this.recording = { ...this.recording, start: extent.start, end: extent.end };
       this.moved.emit();
     });
-    connection.on("playhead", (playhead) => this.take(playhead));
+    connection.on("playhead", (playhead) => this.setPlayhead(playhead));
   }
 
   /** The current timeline; null if there is none. */
@@ -57,7 +57,7 @@ export class TimelineState {
 
   /** The extent of the history; null for a recording. */
   get extent(): HistoryExtent | null {
-    return this.extentNow;
+    return this.historyExtent;
   }
 
   get playing(): boolean {
@@ -129,22 +129,22 @@ export class TimelineState {
   seek(position: number): void {
     if (!this.recording) return;
     this.target = Math.min(this.recording.end, Math.max(this.recording.start, position));
-    if (!this.asked) this.ask(this.target);
+    if (!this.isSeeking) this.requestSeek(this.target);
     this.moved.emit();
   }
 
-  private ask(position: number): void {
-    this.asked = true;
-    this.wanted = position;
+  private requestSeek(position: number): void {
+    this.isSeeking = true;
+    this.requestedPosition = position;
     this.connection.send({ type: "seek_time", position });
   }
 
-  private take(playhead: Playhead): void {
+  private setPlayhead(playhead: Playhead): void {
     const before = this.playhead;
     this.playhead = playhead;
-    if (this.asked && before?.seeks !== playhead.seeks) {
-      this.asked = false;
-      if (this.target !== null && this.target !== this.wanted) this.ask(this.target);
+    if (this.isSeeking && before?.seeks !== playhead.seeks) {
+      this.isSeeking = false;
+      if (this.target !== null && this.target !== this.requestedPosition) this.requestSeek(this.target);
       else this.target = null;
     }
     const same = before !== null && (["playing", "live", "speed", "loop", "problem"] as const).every((key) => before[key] === playhead[key]);

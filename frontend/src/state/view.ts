@@ -2,10 +2,10 @@ import type { Connection } from "../connection/connection";
 import type { Property, PropertyValue, SavedView, View, ViewClass } from "../protocol";
 import { Signal } from "../signal";
 import type { FrameStore } from "./frames";
-import type { Kept } from "./kept";
+import type { PageMemory } from "./kept";
 import { cameraInFixed, cameraInTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
 import { controllerOf } from "./views/catalog";
-import { holds, spanInTarget } from "./views/fit";
+import { contains, spanInTarget } from "./views/fit";
 import { distanceBetween, type Span, type Vector } from "./views/vector";
 import type { Drag, ViewController, ViewValues } from "./views/view-controller";
 
@@ -37,9 +37,9 @@ export class ViewState {
    */
   private framedMap: string | null = null;
   private revision: number | null = null;
-  private measuredFor: number | null = null;
+  private reportedRevision: number | null = null;
   /** Whether a restarted program needs the size of the robots, even if the camera stays. */
-  private measuresAgain = false;
+  private needsSize = false;
   private lastTarget: Target = FIXED;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
@@ -108,20 +108,20 @@ export class ViewState {
   }
 
   /** Preserves the camera across reloads of the page. */
-  keep(kept: Kept): void {
+  preserveIn(kept: PageMemory): void {
     const read = () => ({ view: this.view, revision: this.revision, lookedAt: this.lookedAt });
-    kept.part("view", read, (before: ReturnType<typeof read>) => Object.assign(this, before));
+    kept.preserve("view", read, (before: ReturnType<typeof read>) => Object.assign(this, before));
   }
 
   /** Handles a restart of the program; if it shows other content, the camera starts from its default again. */
   programRestarted(isSame: boolean): void {
-    this.measuresAgain = true;
+    this.needsSize = true;
     if (!isSame) this.revision = null;
   }
 
   /** Whether the server needs the size of the robots although the camera stays. */
   get awaitsSize(): boolean {
-    return this.measuresAgain;
+    return this.needsSize;
   }
 
   /** Fits the robots into view once they are loaded. */
@@ -130,21 +130,21 @@ export class ViewState {
   }
 
   /** Keeps the camera in place from now on, because the user works with the view. */
-  stay(): void {
+  keepCamera(): void {
     this.lookedAt = null;
     this.framedMap = null;
   }
 
   /** Fits a box in the fixed frame into view from the current direction, in a canvas of this size. */
   fit(box: Span, size: ViewSize): void {
-    this.update(this.fitted(box, size));
+    this.update(this.fitValues(box, size));
   }
 
   /** Fits a box into view if the user has not placed the camera, and again when the box has grown. */
   fitFirst(box: Span, size: ViewSize, what: string): void {
     const before = this.lookedAt?.box;
-    if (!before || !holds(before, box)) this.update(this.fitted(box, size));
-    this.lookedAt = { what, box: before && holds(before, box) ? before : box };
+    if (!before || !contains(before, box)) this.update(this.fitValues(box, size));
+    this.lookedAt = { what, box: before && contains(before, box) ? before : box };
   }
 
   /**
@@ -158,7 +158,7 @@ export class ViewState {
   /** Fits a map into view, without changing the view of the file. */
   frameMap(box: Span, size: ViewSize, map: string): void {
     this.framedMap = map;
-    this.view = { ...this.view, values: { ...this.values, ...this.bounded(TOP_DOWN, this.fitted(box, size)) } };
+    this.view = { ...this.view, values: { ...this.values, ...this.withinBounds(TOP_DOWN, this.fitValues(box, size)) } };
     this.changed.emit();
   }
 
@@ -166,10 +166,10 @@ export class ViewState {
    * Reports the size of the robots and the height of the ground below them, once all are loaded, if the user has not
    * moved the camera or the program was restarted.
    */
-  measured({ min, max }: Span, ground: number): void {
-    if (!this.measuresAgain && (this.lookedAt === null || this.measuredFor === this.revision)) return;
-    this.measuresAgain = false;
-    this.measuredFor = this.revision;
+  reportSize({ min, max }: Span, ground: number): void {
+    if (!this.needsSize && (this.lookedAt === null || this.reportedRevision === this.revision)) return;
+    this.needsSize = false;
+    this.reportedRevision = this.revision;
     this.connection.send({ type: "robot_measured", diagonal: distanceBetween(min, max), ground });
   }
 
@@ -183,7 +183,7 @@ export class ViewState {
 
   /** Sets values, limited to the bounds of their properties. */
   update(values: ViewValues): void {
-    this.change({ ...this.view, values: { ...this.view.values, ...this.bounded(this.view.cls, values) } });
+    this.change({ ...this.view, values: { ...this.view.values, ...this.withinBounds(this.view.cls, values) } });
   }
 
   drag(drag: Drag): void {
@@ -261,7 +261,7 @@ export class ViewState {
     const saved = this.saved.find((each) => each.id === id);
     if (!saved) return;
     const { cls, values } = saved.view;
-    this.changeSaved(id, { ...saved.view, values: { ...values, ...this.bounded(cls, { [path]: value }) } });
+    this.changeSaved(id, { ...saved.view, values: { ...values, ...this.withinBounds(cls, { [path]: value }) } });
   }
 
   remove(id: string): void {
@@ -287,7 +287,7 @@ export class ViewState {
     this.framedMap = "";
   }
 
-  private fitted(box: Span, size: ViewSize): ViewValues {
+  private fitValues(box: Span, size: ViewSize): ViewValues {
     return this.controller.fit(this.view.values, spanInTarget(box, this.target), size);
   }
 
@@ -314,7 +314,7 @@ export class ViewState {
     return this.classes.find((each) => each.cls === cls)?.defaults ?? controllerOf(cls).zero();
   }
 
-  private bounded(cls: string, values: ViewValues): ViewValues {
+  private withinBounds(cls: string, values: ViewValues): ViewValues {
     const result: Record<string, PropertyValue> = {};
     for (const [path, value] of Object.entries(values)) {
       const property = find(this.propertiesOf(cls), path);

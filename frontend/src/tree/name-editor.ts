@@ -62,7 +62,7 @@ export class NameEditor implements Editor {
     this.list = h("ul", { class: "popup", role: "listbox", aria: { label: this.label } }, ...entries);
     if (entries.length === 0) this.list.append(h("li", { role: "option", tabIndex: -1 }, strings.tree.noNames));
     this.list.addEventListener("click", (event) => this.choose(event.target as HTMLElement));
-    this.list.addEventListener("keydown", (event) => this.keyed(event));
+    this.list.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.list.addEventListener("focusout", (event) => {
       if (!this.list?.contains(event.relatedTarget as Node | null)) this.close();
     });
@@ -90,7 +90,7 @@ export class NameEditor implements Editor {
     this.element.closest<HTMLElement>("[role=treeitem]")?.focus();
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const entry = event.target as HTMLElement;
     if (event.key === "ArrowDown") (entry.nextElementSibling as HTMLElement | null)?.focus();
     else if (event.key === "ArrowUp") (entry.previousElementSibling as HTMLElement | null)?.focus();

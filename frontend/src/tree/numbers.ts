@@ -1,5 +1,5 @@
 /** From this size on, numbers with fixed decimals are written with an exponent. */
-const LARGE = 1e6;
+const EXPONENT_FROM = 1e6;
 
 /** Returns a number as in a property row: at most six significant digits, no trailing zeros. */
 export function formatNumber(value: number): string {
@@ -20,7 +20,7 @@ export function formatPoint(values: readonly number[]): string {
  * an exponent.
  */
 export function formatFixed(value: number, digits: number): string {
-  if (Math.abs(value) >= LARGE) return value.toExponential(2);
+  if (Math.abs(value) >= EXPONENT_FROM) return value.toExponential(2);
   const text = value.toFixed(digits);
   return Number(text) === 0 ? (0).toFixed(digits) : text;
 }

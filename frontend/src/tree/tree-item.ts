@@ -21,7 +21,7 @@ export interface TreeItem {
   /** Whether the name fills the whole row. */
   readonly wide?: boolean;
   /** Whether several rows of this kind can be selected together. */
-  readonly severally?: boolean;
+  readonly multiSelectable?: boolean;
   /** A small text after the name. */
   readonly badge?: string;
   readonly options?: readonly string[];
@@ -38,7 +38,7 @@ export interface TreeItem {
   /** Whether the value follows the scene, and is read each time it is shown. */
   readonly live?: boolean;
   /** Requests the names to choose from, for a row of the kind `topic`. */
-  readonly ask?: (show: (names: readonly string[]) => void) => void;
+  readonly requestNames?: (show: (names: readonly string[]) => void) => void;
   /** Applies an edit; a row without it is read-only. */
   readonly set?: (value: PropertyValue) => void;
 }

@@ -1,11 +1,11 @@
 import { coalesced, h } from "../dom";
 import { Signal } from "../signal";
-import type { Kept } from "../state/kept";
+import type { PageMemory } from "../state/kept";
 import { ColumnSplitter } from "./column-splitter";
 import type { TreeItem } from "./tree-item";
 import { TreeRow } from "./tree-row";
 
-interface Line {
+interface VisibleItem {
   item: TreeItem;
   depth: number;
   expanded: boolean;
@@ -20,7 +20,7 @@ export class TreeView {
   readonly refresh = coalesced(() => this.render());
   private readonly rows = new Map<string, TreeRow>();
   private readonly expansion = new Map<string, boolean>();
-  private lines: Line[] = [];
+  private lines: VisibleItem[] = [];
   private selectedKey: string | null = null;
   /** The other selected rows, among those that permit a multiple selection. */
   private readonly others = new Set<string>();
@@ -38,10 +38,10 @@ export class TreeView {
   ) {
     this.list = h("div", { class: "tree", role: "tree", aria: { label, multiselectable: "true" } });
     this.element = h("div", { class: "tree-box" }, this.list, new ColumnSplitter().element);
-    this.list.addEventListener("mousedown", (event) => this.pressed(event));
-    this.list.addEventListener("click", (event) => this.clicked(event));
-    this.list.addEventListener("dblclick", (event) => this.doubleClicked(event));
-    this.list.addEventListener("keydown", (event) => this.keyed(event));
+    this.list.addEventListener("mousedown", (event) => this.onMouseDown(event));
+    this.list.addEventListener("click", (event) => this.onClick(event));
+    this.list.addEventListener("dblclick", (event) => this.onDoubleClick(event));
+    this.list.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.list.addEventListener("focusin", (event) => {
       const key = keyOf(event.target);
       if (key !== null && !this.isSelected(key)) this.select(key);
@@ -59,9 +59,9 @@ export class TreeView {
   }
 
   /** Preserves which rows are unfolded and selected across reloads of the page. */
-  keep(kept: Kept, name: string): void {
+  preserveIn(kept: PageMemory, name: string): void {
     const read = () => ({ expansion: [...this.expansion], selected: this.selectedKey });
-    kept.part(`tree ${name}`, read, ({ expansion, selected }: ReturnType<typeof read>) => {
+    kept.preserve(`tree ${name}`, read, ({ expansion, selected }: ReturnType<typeof read>) => {
       for (const [key, expanded] of expansion) this.expansion.set(key, expanded);
       this.scrollTo = this.selectedKey = selected;
     });
@@ -80,7 +80,7 @@ export class TreeView {
   }
 
   /** Resets the user's folding of some rows to the default. */
-  forgetExpansion(of: (key: string) => boolean): void {
+  resetExpansion(of: (key: string) => boolean): void {
     for (const key of this.expansion.keys()) if (of(key)) this.expansion.delete(key);
     this.refresh();
   }
@@ -126,7 +126,7 @@ export class TreeView {
       elements.push(row.element);
     }
     for (const key of this.rows.keys()) if (!keep.has(key)) this.rows.delete(key);
-    arrange(this.list, elements);
+    setChildren(this.list, elements);
     const [first] = elements;
     if (first && (this.selectedKey === null || !keep.has(this.selectedKey))) first.tabIndex = 0;
     // If the focused row was removed, the row in its place gets the focus.
@@ -169,7 +169,7 @@ export class TreeView {
 
   private select(key: string, keep = false): void {
     if (!keep) this.others.clear();
-    else if (this.selectedKey !== null && this.isSeveral(this.selectedKey)) this.others.add(this.selectedKey);
+    else if (this.selectedKey !== null && this.isMultiSelectable(this.selectedKey)) this.others.add(this.selectedKey);
     this.others.delete(key);
     const news = key !== this.selectedKey;
     this.selectedKey = key;
@@ -184,8 +184,8 @@ export class TreeView {
     for (const [key, row] of this.rows) row.selected = this.isSelected(key);
   }
 
-  private isSeveral(key: string): boolean {
-    return this.rows.get(key)?.item.severally === true;
+  private isMultiSelectable(key: string): boolean {
+    return this.rows.get(key)?.item.multiSelectable === true;
   }
 
   /** Adds a row to the selection, or removes it, on Ctrl+click. */
@@ -205,15 +205,15 @@ export class TreeView {
     if (from === undefined || to === undefined || from < 0) return;
     this.others.clear();
     for (const { item } of this.lines.slice(Math.min(from, to), Math.max(from, to) + 1)) {
-      if (item.severally === true && item.key !== this.selectedKey) this.others.add(item.key);
+      if (item.multiSelectable === true && item.key !== this.selectedKey) this.others.add(item.key);
     }
     this.showSelection();
   }
 
   /** Adds the next row to the selection and focuses it, on Shift and an arrow key. */
-  private grow(index: number, step: number): void {
+  private extendByKey(index: number, step: number): void {
     let at = index + step;
-    while (this.lines[at] && this.lines[at]?.item.severally !== true) at += step;
+    while (this.lines[at] && this.lines[at]?.item.multiSelectable !== true) at += step;
     const key = this.lines[at]?.item.key;
     if (key === undefined) return;
     this.select(key, true);
@@ -230,19 +230,19 @@ export class TreeView {
    * Keeps the focus in place when a press adds to the selection or opens the menu of several rows: moving it would
    * select one row only.
    */
-  private pressed(event: MouseEvent): void {
+  private onMouseDown(event: MouseEvent): void {
     this.isPressed = true;
     document.addEventListener("mouseup", () => (this.isPressed = false), { once: true });
     const key = keyOf(event.target);
-    if (key === null || !this.isSeveral(key)) return;
-    if (adds(event) || (event.button === 2 && this.others.size > 0 && this.isSelected(key))) event.preventDefault();
+    if (key === null || !this.isMultiSelectable(key)) return;
+    if (addsToSelection(event) || (event.button === 2 && this.others.size > 0 && this.isSelected(key))) event.preventDefault();
   }
 
-  private clicked(event: MouseEvent): void {
+  private onClick(event: MouseEvent): void {
     const target = event.target as HTMLElement;
     const row = this.rows.get(keyOf(target) ?? "");
     if (!row) return;
-    if (adds(event) && row.item.severally === true && this.selectedKey !== null && this.isSeveral(this.selectedKey)) {
+    if (addsToSelection(event) && row.item.multiSelectable === true && this.selectedKey !== null && this.isMultiSelectable(this.selectedKey)) {
       if (event.shiftKey) this.extend(row.item.key);
       else this.toggle(row.item.key);
       return;
@@ -253,7 +253,7 @@ export class TreeView {
     row.element.scrollIntoView({ block: "nearest" });
   }
 
-  private doubleClicked(event: MouseEvent): void {
+  private onDoubleClick(event: MouseEvent): void {
     const target = event.target as HTMLElement;
     const row = this.rows.get(keyOf(target) ?? "");
     if (!row || !target.closest(".row-name") || target.closest(".twist")) return;
@@ -263,7 +263,7 @@ export class TreeView {
     }
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const index = this.lines.findIndex((line) => line.item.key === this.selectedKey);
     const line = this.lines[index];
     const row = line && this.rows.get(line.item.key);
@@ -271,7 +271,7 @@ export class TreeView {
     switch (event.key) {
       case "ArrowDown":
       case "ArrowUp":
-        if (event.shiftKey) this.grow(index, event.key === "ArrowDown" ? 1 : -1);
+        if (event.shiftKey) this.extendByKey(index, event.key === "ArrowDown" ? 1 : -1);
         else this.focusLine(index + (event.key === "ArrowDown" ? 1 : -1));
         break;
       case "Home":
@@ -313,7 +313,7 @@ export class TreeView {
 }
 
 /** Whether a click adds to the selection. */
-function adds(event: MouseEvent): boolean {
+function addsToSelection(event: MouseEvent): boolean {
   return event.shiftKey || event.ctrlKey || event.metaKey;
 }
 
@@ -322,7 +322,7 @@ function keyOf(target: EventTarget | null): string | null {
 }
 
 /** Makes these elements the children of `parent`, in order, moving only those that are out of place. */
-function arrange(parent: HTMLElement, elements: readonly HTMLElement[]): void {
+function setChildren(parent: HTMLElement, elements: readonly HTMLElement[]): void {
   const wanted = new Set<Element>(elements);
   for (const child of [...parent.children]) if (!wanted.has(child)) child.remove();
   let next = parent.firstElementChild;

@@ -30,7 +30,7 @@ export class Dialog {
     });
     this.mainButton = buttons.find(({ choice }) => choice.main === true)?.element ?? null;
     const heading = h("h2", {}, title);
-    heading.id = `dialog-${String(++opened)}`;
+    heading.id = `dialog-${String(++dialogCount)}`;
     const close = button(strings.close, () => this.close(), "tool bare", icon("close"));
     this.element = h(
       "dialog",
@@ -79,10 +79,10 @@ export class Dialog {
   }
 }
 
-let opened = 0;
+let dialogCount = 0;
 
 /** Shows a notice to the user; `lines` lists its subjects below the text. */
-export function tell(title: string, text: string, lines: readonly string[] = []): void {
+export function showNotice(title: string, text: string, lines: readonly string[] = []): void {
   const list = h("ul", { class: "dialog-lines" }, ...lines.map((line) => h("li", {}, line)));
   const content = lines.length > 0 ? [h("p", {}, text), list] : [h("p", {}, text)];
   new Dialog(title, content, [{ label: strings.shell.ok, main: true }]).open();

@@ -8,7 +8,7 @@ export interface ImageView {
 type Size = readonly [width: number, height: number];
 
 /** The minimum size of texts on the screen, px. */
-const LEAST_TEXT = 10;
+const MIN_TEXT = 10;
 
 /**
  * Returns the view of a whole image if its texts are legible; otherwise of the part around a point, at the scale that
@@ -19,7 +19,7 @@ const LEAST_TEXT = 10;
  */
 export function legibleView(image: Size, window: Size, text: number, point: readonly [number, number], margin = 16): ImageView {
   const fits = Math.min((window[0] - 2 * margin) / image[0], (window[1] - 2 * margin) / image[1]);
-  const scale = Math.min(1, Math.max(LEAST_TEXT / text, fits));
+  const scale = Math.min(1, Math.max(MIN_TEXT / text, fits));
   const place = (axis: 0 | 1): number => {
     const [size, room] = [image[axis] * scale, window[axis]];
     if (size <= room - 2 * margin) return (room - size) / 2;

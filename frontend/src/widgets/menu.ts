@@ -48,7 +48,7 @@ function showMenu(entries: readonly MenuEntry[], place: Place, origin: HTMLEleme
   const enabled = items.filter((item) => item.getAttribute("aria-disabled") !== "true");
   menu.addEventListener("keydown", (event) => {
     if (event.key === "Escape" || event.key === "Tab") close(true);
-    else if (!moveFocus(enabled, event.key)) return;
+    else if (!handleKey(enabled, event.key)) return;
     event.preventDefault();
     event.stopPropagation();
   });
@@ -91,7 +91,7 @@ function menuItem(entry: MenuEntry, close: () => void): HTMLLIElement {
  * Handles a key of a menu and returns whether there was a command for it. A letter moves to the next entry that begins
  * with it.
  */
-function moveFocus(items: readonly HTMLLIElement[], key: string): boolean {
+function handleKey(items: readonly HTMLLIElement[], key: string): boolean {
   const index = items.indexOf(document.activeElement as HTMLLIElement);
   if (key === "ArrowDown") items[(index + 1) % items.length]?.focus();
   else if (key === "ArrowUp") items.at(index - 1)?.focus();

@@ -25,14 +25,14 @@ export class PanZoom {
     private readonly changed: (x: number, y: number, scale: number) => void,
     private readonly fit: () => void,
   ) {
-    element.addEventListener("wheel", (event) => this.wheeled(event), { passive: false });
-    element.addEventListener("pointerdown", (event) => this.pressed(event));
-    element.addEventListener("pointermove", (event) => this.moved(event));
+    element.addEventListener("wheel", (event) => this.onWheel(event), { passive: false });
+    element.addEventListener("pointerdown", (event) => this.onPointerDown(event));
+    element.addEventListener("pointermove", (event) => this.onPointerMove(event));
     for (const end of ["pointerup", "pointercancel"] as const) {
       element.addEventListener(end, (event) => this.pointers.delete(event.pointerId));
     }
     element.addEventListener("dblclick", () => fit());
-    element.addEventListener("keydown", (event) => this.keyed(event));
+    element.addEventListener("keydown", (event) => this.onKeyDown(event));
   }
 
   get scale(): number {
@@ -40,7 +40,7 @@ export class PanZoom {
   }
 
   /** Whether the pointer has moved too far since the press to be a click. */
-  get dragged(): boolean {
+  get wasDragged(): boolean {
     return this.travelled >= CLICK_SLOP;
   }
 
@@ -50,7 +50,7 @@ export class PanZoom {
   }
 
   /** Fits an image of this size, with a margin, at its original size at most. */
-  show(width: number, height: number, margin = 16): void {
+  fitImage(width: number, height: number, margin = 16): void {
     const { clientWidth, clientHeight } = this.element;
     const fits = Math.min((clientWidth - 2 * margin) / width, (clientHeight - 2 * margin) / height);
     const scale = Math.min(1, Math.max(SMALLEST, fits));
@@ -58,7 +58,7 @@ export class PanZoom {
   }
 
   /** Shows an image of this size with legible texts; if it is too large for that, `point` is centred. */
-  open(width: number, height: number, text: number, point: readonly [number, number]): void {
+  showLegibly(width: number, height: number, text: number, point: readonly [number, number]): void {
     const { clientWidth, clientHeight } = this.element;
     const { x, y, scale } = legibleView([width, height], [clientWidth, clientHeight], text, point);
     this.set(x, y, scale);
@@ -78,42 +78,42 @@ export class PanZoom {
     this.set(x - (x - this.x) * real, y - (y - this.y) * real, zoom);
   }
 
-  private wheeled(event: WheelEvent): void {
+  private onWheel(event: WheelEvent): void {
     event.preventDefault();
     const box = this.element.getBoundingClientRect();
     const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 40 : 1;
     this.zoomBy(2 ** ((-event.deltaY * lines) / WHEEL_NOTCH), event.clientX - box.left, event.clientY - box.top);
   }
 
-  private pressed(event: PointerEvent): void {
+  private onPointerDown(event: PointerEvent): void {
     this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
     this.travelled = this.pointers.size > 1 ? CLICK_SLOP : 0;
   }
 
-  private moved(event: PointerEvent): void {
+  private onPointerMove(event: PointerEvent): void {
     const last = this.pointers.get(event.pointerId);
     if (!last) return;
-    const spread = this.spread();
+    const spread = this.fingerDistance();
     const [dx, dy] = [event.clientX - last.x, event.clientY - last.y];
     last.x = event.clientX;
     last.y = event.clientY;
     this.travelled += Math.hypot(dx, dy);
-    if (this.dragged) this.element.setPointerCapture(event.pointerId);
+    if (this.wasDragged) this.element.setPointerCapture(event.pointerId);
     const count = this.pointers.size;
     this.set(this.x + dx / count, this.y + dy / count, this.zoom);
     if (count > 1 && spread > 0) {
       const box = this.element.getBoundingClientRect();
-      this.zoomBy(this.spread() / spread, event.clientX - box.left, event.clientY - box.top);
+      this.zoomBy(this.fingerDistance() / spread, event.clientX - box.left, event.clientY - box.top);
     }
   }
 
   /** Returns the distance between the first two fingers, px. */
-  private spread(): number {
+  private fingerDistance(): number {
     const [a, b] = [...this.pointers.values()];
     return a && b ? Math.hypot(a.x - b.x, a.y - b.y) : 0;
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const move = (dx: number, dy: number): void => this.set(this.x + dx, this.y + dy, this.zoom);
     const keys: Readonly<Record<string, () => void>> = {

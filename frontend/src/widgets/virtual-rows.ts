@@ -47,12 +47,12 @@ export class VirtualRows {
     this.draw(false);
   }
 
-  private draw(anew: boolean): void {
+  private draw(isStale: boolean): void {
     const { scrollTop, clientHeight } = this.element;
     const first = Math.max(0, Math.floor(scrollTop / this.rowHeight) - OVERSCAN);
     const end = Math.min(this.count, Math.ceil((scrollTop + clientHeight) / this.rowHeight) + OVERSCAN);
-    if (!anew && first === this.first && end === this.first + this.rows.length) return;
-    const old = anew ? [] : this.rows;
+    if (!isStale && first === this.first && end === this.first + this.rows.length) return;
+    const old = isStale ? [] : this.rows;
     const before = this.first;
     this.rows = Array.from({ length: Math.max(0, end - first) }, (_, i) => old[first + i - before] ?? this.make(first + i));
     this.first = first;

@@ -1,7 +1,7 @@
 /**
  * Calls `changed` when an element becomes visible or hidden; the dock removes the panels of hidden tabs from the page.
  */
-export function whenSeen(element: HTMLElement, changed: (seen: boolean) => void): void {
+export function onVisibilityChange(element: HTMLElement, changed: (seen: boolean) => void): void {
   let seen = false;
   new ResizeObserver(() => {
     const now = element.isConnected && element.offsetWidth > 0;
@@ -12,9 +12,9 @@ export function whenSeen(element: HTMLElement, changed: (seen: boolean) => void)
 }
 
 /** Holds a resource while an element is visible; `shown` is called after each acquisition. */
-export function holdWhileSeen(element: HTMLElement, hold: () => () => void, shown: () => void): void {
+export function holdWhileVisible(element: HTMLElement, hold: () => () => void, shown: () => void): void {
   let release: (() => void) | null = null;
-  whenSeen(element, (seen) => {
+  onVisibilityChange(element, (seen) => {
     release?.();
     release = seen ? hold() : null;
     if (seen) shown();

@@ -1,7 +1,7 @@
 import { button, coalesced, h } from "../../dom";
 import { icon, type IconName } from "../../icons";
 import type { ComparedItem, ComparedPlace } from "../../protocol";
-import { grouped, MARK_COLORS, marksIn, type DifferenceGroup } from "../../state/comparison";
+import { groupDifferences, MARK_COLORS, marksIn, type DifferenceGroup } from "../../state/comparison";
 import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -95,7 +95,7 @@ export class ComparisonPanel implements Panel {
     this.element.classList.toggle("same", items.length === 0);
     this.count.textContent = items.length === 0 ? words.same : words.count(items.length);
     const at = this.list.scrollTop;
-    this.list.replaceChildren(...grouped(items).map((group) => this.group(group)));
+    this.list.replaceChildren(...groupDifferences(items).map((group) => this.group(group)));
     this.list.scrollTop = at;
     this.showSwitches();
     this.showFocus();
@@ -178,7 +178,7 @@ export class ComparisonPanel implements Panel {
     const display = this.session.comparison.compared?.[side].display ?? "";
     if (file === "" || display === "") return h("span", { class: "place", title: text }, ...words);
     const name = text.replace(/(:\d+)+$/, "");
-    return button(text, () => this.session.description.placeAsked.emit({ file, line, display, name }), "place", ...words);
+    return button(text, () => this.session.description.placeRequested.emit({ file, line, display, name }), "place", ...words);
   }
 }
 

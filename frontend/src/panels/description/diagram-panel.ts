@@ -2,11 +2,11 @@ import { button, coalesced, h } from "../../dom";
 import { icon } from "../../icons";
 import type { DescriptionModel, ElementName } from "../../state/description-model";
 import { layOut, type Diagram, type DiagramNode } from "../../state/diagram-layout";
-import { same } from "../../state/element-focus";
+import { isSameElement } from "../../state/element-focus";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { PanZoom } from "../../widgets/pan-zoom";
-import { holdWhileSeen } from "../../widgets/when-seen";
+import { holdWhileVisible } from "../../widgets/when-seen";
 import type { Panel } from "../panel";
 import { currentModel } from "./current-model";
 
@@ -57,10 +57,10 @@ export class DiagramPanel implements Panel {
     this.element = h("div", { class: "panel" }, bar, this.empty, this.canvas);
     const { description, focus } = session;
     const update = coalesced(() => this.update());
-    holdWhileSeen(this.element, () => description.hold(), update);
+    holdWhileVisible(this.element, () => description.hold(), update);
     description.arrived.on(update);
     session.robotChanged.on(update);
-    focus.changed.on(coalesced(() => this.focused()));
+    focus.changed.on(coalesced(() => this.showFocus()));
     description.edited.on(({ links, joints }) => this.flash(links, joints));
     this.update();
   }
@@ -90,7 +90,7 @@ export class DiagramPanel implements Panel {
     if (this.isPlaced || this.canvas.clientWidth === 0) return;
     this.isPlaced = true;
     this.place();
-    this.focused();
+    this.showFocus();
   }
 
   private draw(model: DescriptionModel): void {
@@ -125,24 +125,24 @@ export class DiagramPanel implements Panel {
         : svg("ellipse", { rx: width / 2, ry: height / 2 });
     group.append(shape, label(element.name, 0, "name"));
     group.addEventListener("click", () => {
-      if (!this.panZoom.dragged) this.session.focus.select(element);
+      if (!this.panZoom.wasDragged) this.session.focus.select(element);
     });
     group.addEventListener("pointerenter", () => this.session.focus.setHovered(element));
     group.addEventListener("pointerleave", () => this.session.focus.setHovered(null));
     return group;
   }
 
-  private focused(): void {
+  private showFocus(): void {
     const { current } = this.session.focus;
     for (const old of this.drawing.querySelectorAll(".node.selected")) old.classList.remove("selected");
     if (!current) return;
     this.nodes.get(key(current))?.classList.add("selected");
-    const node = this.diagram?.nodes.find(({ element }) => same(element, current));
+    const node = this.diagram?.nodes.find(({ element }) => isSameElement(element, current));
     if (node && !this.canvas.matches(":hover")) this.panZoom.reveal(node.x, node.y);
   }
 
   private fit(): void {
-    if (this.diagram && this.canvas.clientWidth > 0) this.panZoom.show(this.diagram.width, this.diagram.height);
+    if (this.diagram && this.canvas.clientWidth > 0) this.panZoom.fitImage(this.diagram.width, this.diagram.height);
   }
 
   /** Scrolls to the selected element, or else the root, at a legible size. */
@@ -150,8 +150,8 @@ export class DiagramPanel implements Panel {
     const { diagram } = this;
     if (!diagram || this.canvas.clientWidth === 0) return;
     const { current } = this.session.focus;
-    const node = (current && diagram.nodes.find(({ element }) => same(element, current))) ?? diagram.nodes.find(({ above }) => !above);
-    this.panZoom.open(diagram.width, diagram.height, TEXT_PX, [node?.x ?? 0, node?.y ?? 0]);
+    const node = (current && diagram.nodes.find(({ element }) => isSameElement(element, current))) ?? diagram.nodes.find(({ above }) => !above);
+    this.panZoom.showLegibly(diagram.width, diagram.height, TEXT_PX, [node?.x ?? 0, node?.y ?? 0]);
   }
 
   private toggleOrigins(pressed: HTMLElement): void {
@@ -160,7 +160,7 @@ export class DiagramPanel implements Panel {
     pressed.setAttribute("aria-pressed", String(this.origins));
     if (this.model) this.draw(this.model);
     this.place();
-    this.focused();
+    this.showFocus();
   }
 
   private flash(links: readonly string[], joints: readonly string[]): void {

@@ -24,16 +24,16 @@ export class SourceView {
   private cursor = 1;
   private text: string | null = null;
 
-  /** @param chosen - called with the line that the user clicked, or pressed Enter on. */
+  /** @param onChosen - called with the line that the user clicked, or pressed Enter on. */
   constructor(
     label: string,
-    private readonly chosen: (line: number) => void,
+    private readonly onChosen: (line: number) => void,
   ) {
     this.element = this.rows.element;
     this.element.setAttribute("role", "region");
     this.element.setAttribute("aria-label", label);
-    this.element.addEventListener("keydown", (event) => this.keyed(event));
-    this.element.addEventListener("click", (event) => this.clicked(event));
+    this.element.addEventListener("keydown", (event) => this.onKeyDown(event));
+    this.element.addEventListener("click", (event) => this.onClick(event));
   }
 
   get lineCount(): number {
@@ -85,13 +85,13 @@ export class SourceView {
     return row;
   }
 
-  private clicked(event: MouseEvent): void {
+  private onClick(event: MouseEvent): void {
     if (!window.getSelection()?.isCollapsed) return; // text is being selected
     const row = (event.target as HTMLElement).closest<HTMLElement>(".source-line");
     if (row) this.choose(Number(row.dataset["line"]));
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
     if (step !== undefined && !event.ctrlKey && !event.metaKey) {
       this.cursor = Math.min(Math.max(1, this.cursor + step), this.lines.length);
@@ -106,7 +106,7 @@ export class SourceView {
   private choose(line: number): void {
     this.cursor = line;
     this.showCursor();
-    this.chosen(line);
+    this.onChosen(line);
   }
 
   private showCursor(): void {

@@ -24,12 +24,12 @@ export class AddDialog {
   private readonly showAll = h("input", { class: "check" });
   private readonly allBox: HTMLElement;
   private readonly tabs: Readonly<Record<Tab, HTMLButtonElement>>;
-  private readonly forget: () => void;
+  private readonly stopListening: () => void;
   private tab: Tab = "type";
-  private waits = false;
+  private isWaiting = false;
   private choices: Choice[] = [];
   private chosen: Choice | null = null;
-  private named = "";
+  private suggestedName = "";
 
   /** @param group - the group that the display is added to; null for none. */
   constructor(
@@ -42,8 +42,8 @@ export class AddDialog {
     this.search.placeholder = words.search;
     this.search.setAttribute("aria-label", words.search);
     this.search.addEventListener("input", () => this.fill());
-    this.search.addEventListener("keydown", (event) => this.keyed(event));
-    this.list.addEventListener("keydown", (event) => this.keyed(event));
+    this.search.addEventListener("keydown", (event) => this.onKeyDown(event));
+    this.list.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.name.setAttribute("aria-label", words.displayName);
     this.name.maxLength = 200;
     this.showAll.type = "checkbox";
@@ -62,12 +62,12 @@ export class AddDialog {
       [{ label: strings.shell.cancel }, { label: words.add, main: true, run: () => this.accept() }],
       "add-dialog",
     );
-    this.forget = session.configuration.offered.on(() => {
-      if (!this.waits) return; // what is listed stays where the mouse may be
-      this.waits = false;
+    this.stopListening = session.configuration.choicesArrived.on(() => {
+      if (!this.isWaiting) return; // what is listed stays where the mouse may be
+      this.isWaiting = false;
       this.fill();
     });
-    this.dialog.element.addEventListener("close", () => this.forget());
+    this.dialog.element.addEventListener("close", () => this.stopListening());
   }
 
   open(): void {
@@ -95,8 +95,8 @@ export class AddDialog {
     }
     this.allBox.hidden = tab !== "topic";
     const { configuration } = this.session;
-    this.waits = tab === "topic" || configuration.choices === null;
-    if (this.waits) configuration.askChoices();
+    this.isWaiting = tab === "topic" || configuration.choices === null;
+    if (this.isWaiting) configuration.requestChoices();
     this.fill();
   }
 
@@ -116,13 +116,13 @@ export class AddDialog {
 
   private emptyText(): string {
     const words = strings.displays;
-    if (this.waits) return words.asking;
+    if (this.isWaiting) return words.asking;
     return this.tab === "topic" && this.offered.topics.length === 0 ? words.noTopics : words.notFound;
   }
 
   private get offered(): { classes: DisplayClass[]; topics: TopicChoice[] } {
     const { choices } = this.session.configuration;
-    return this.waits || choices === null ? { classes: [], topics: [] } : choices;
+    return this.isWaiting || choices === null ? { classes: [], topics: [] } : choices;
   }
 
   private types(wanted: string): HTMLElement[] {
@@ -178,14 +178,14 @@ export class AddDialog {
     }
     this.dialog.ready = choice !== null;
     // Keep a name that the user typed.
-    if (choice && (this.name.value === "" || this.name.value === this.named)) {
-      this.named = shortName(choice.cls);
-      this.name.value = this.named;
+    if (choice && (this.name.value === "" || this.name.value === this.suggestedName)) {
+      this.suggestedName = shortName(choice.cls);
+      this.name.value = this.suggestedName;
     }
     choice?.element.scrollIntoView({ block: "nearest" });
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const index = this.chosen ? this.choices.indexOf(this.chosen) : -1;
     const inList = event.target !== this.search;
     const step = { ArrowDown: 1, ArrowUp: -1, PageDown: 8, PageUp: -8 }[event.key];

@@ -1,7 +1,7 @@
 import type { JointScene } from "../../protocol";
 import type { DisplayState } from "../../state/displays";
 import type { FrameStore } from "../../state/frames";
-import { composed, relative, type PoseNumbers } from "../../state/pose-numbers";
+import { compose, relativeTo, type PoseNumbers } from "../../state/pose-numbers";
 import type { PropertyNode } from "../../state/properties";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -10,7 +10,7 @@ import { formatNumber } from "../../tree/numbers";
 import type { TreeItem } from "../../tree/tree-item";
 
 /** Positions (m) and quaternions are rounded to multiples of this. */
-const FINEST = 1e-6;
+const ROUNDING = 1e-6;
 
 /**
  * Returns the read-only rows below a row with `details`: the current pose of a frame, link or joint. The page has the
@@ -33,14 +33,14 @@ export function detailRows(node: PropertyNode, display: DisplayState, session: S
 
 function frameRows({ id, name }: PropertyNode, frames: FrameStore): TreeItem[] {
   const parent = (): number => frames.parents[frames.row(name)] ?? -1;
-  const seen = (): PoseNumbers | null => {
+  const relativePose = (): PoseNumbers | null => {
     const [above, here] = [poseOf(frames, parent()), poseOf(frames, frames.row(name))];
-    return above && here ? relative(above, here) : null;
+    return above && here ? relativeTo(above, here) : null;
   };
   return [
     textRow(`${id}#Parent`, "Parent", () => frames.names[parent()] ?? ""),
     ...poseRows(id, () => poseOf(frames, frames.row(name))),
-    ...poseRows(id, seen, "Relative "),
+    ...poseRows(id, relativePose, "Relative "),
   ];
 }
 
@@ -81,14 +81,14 @@ function effortRows({ id, name }: PropertyNode, display: DisplayState, session: 
 function poseRows(id: string, pose: () => PoseNumbers | null, prefix = ""): TreeItem[] {
   const [position, orientation] = [`${prefix}Position`, `${prefix}Orientation`];
   return [
-    vectorRow(`${id}#${position}`, position, ["X", "Y", "Z"], () => settled(pose())?.slice(0, 3) ?? null),
-    vectorRow(`${id}#${orientation}`, orientation, ["X", "Y", "Z", "W"], () => settled(pose())?.slice(3) ?? null),
+    vectorRow(`${id}#${position}`, position, ["X", "Y", "Z"], () => rounded(pose())?.slice(0, 3) ?? null),
+    vectorRow(`${id}#${orientation}`, orientation, ["X", "Y", "Z", "W"], () => rounded(pose())?.slice(3) ?? null),
   ];
 }
 
 /** Rounds away what single precision adds to zeros. */
-function settled(pose: PoseNumbers | null): number[] | null {
-  return pose && pose.map((part) => Math.round(part / FINEST) * FINEST);
+function rounded(pose: PoseNumbers | null): number[] | null {
+  return pose && pose.map((part) => Math.round(part / ROUNDING) * ROUNDING);
 }
 
 /** Returns a row with numbers in RViz's notation, with one row for each number below it. */
@@ -137,7 +137,7 @@ function jointPose(joint: JointScene, display: DisplayState, session: Session): 
   const above = linkPose(joint.parent, display, session);
   const [x = 0, y = 0, z = 0] = joint.position;
   const [qx = 0, qy = 0, qz = 0, qw = 1] = joint.quaternion;
-  return above && composed(above, [x, y, z, qx, qy, qz, qw]);
+  return above && compose(above, [x, y, z, qx, qy, qz, qw]);
 }
 
 function poseOf(frames: FrameStore, row: number): PoseNumbers | null {

@@ -51,7 +51,7 @@ export class DisplayCommands {
     const display = this.selected();
     if (!display) return;
     const { displays, configuration } = this.session;
-    const siblings = displays.within(display.group);
+    const siblings = displays.childrenOf(display.group);
     const index = siblings.indexOf(display);
     const group = display.group?.id ?? null;
     if (up && index > 0) configuration.move([display.id], group, siblings[index - 1]?.id ?? null);
@@ -59,7 +59,7 @@ export class DisplayCommands {
   }
 
   /** Runs the command of a key and returns whether there was one. On the row of a property, only Add has a key. */
-  pressed(event: KeyboardEvent, onDisplay: boolean): boolean {
+  runKey(event: KeyboardEvent, onDisplay: boolean): boolean {
     const keys: readonly (readonly [keyof typeof SHORTCUTS, () => void])[] = [
       ["add", () => this.add()],
       ["addToo", () => this.add()],

@@ -60,7 +60,7 @@ export class DisplayDrag {
       event.dataTransfer.effectAllowed = "move";
       event.dataTransfer.setData("text/plain", this.dragged.name);
     });
-    element.addEventListener("dragover", (event) => this.over(event));
+    element.addEventListener("dragover", (event) => this.onDragOver(event));
     element.addEventListener("dragleave", (event) => {
       if (!element.contains(event.relatedTarget as Node | null)) this.mark(null);
     });
@@ -73,7 +73,7 @@ export class DisplayDrag {
     element.addEventListener("dragend", () => this.end());
   }
 
-  private over(event: DragEvent): void {
+  private onDragOver(event: DragEvent): void {
     const place = this.placeOf(event);
     this.mark(place?.row ?? null, place?.part);
     if (!place) return;

@@ -12,7 +12,7 @@ import { displayRows } from "./robot-rows";
 /** Returns the rows of the Displays panel, read from the session each time the tree is drawn. */
 export function displayItems(session: Session): TreeItem[] {
   const { displays } = session;
-  if (!displays.known) return [];
+  if (!displays.isKnown) return [];
   const set = (id: string, value: PropertyValue): void => session.setProperty(id, value);
   return [
     {
@@ -28,7 +28,7 @@ export function displayItems(session: Session): TreeItem[] {
       children: () => displays.globalOptions.nodes.map((node) => propertyItem(node, set)),
     },
     statusItem("#status", strings.tree.globalStatus, displays.globalLevel, displays.globalStatus, true),
-    ...displays.within(null).map((display) => displayItem(session, display, set)),
+    ...displays.childrenOf(null).map((display) => displayItem(session, display, set)),
   ];
 }
 
@@ -45,9 +45,9 @@ function displayItem(
     status.push(statusItem(`${display.id}#status`, name, level, display.status, false));
   }
   const within = (): TreeItem[] =>
-    session.displays.within(display).map((each) => displayItem(session, each, set));
-  const offered = (item: TreeItem): TreeItem =>
-    item.kind === "topic" ? { ...item, ask: (show) => offerTopics(session, display, item.name, show) } : item;
+    session.displays.childrenOf(display).map((each) => displayItem(session, each, set));
+  const withTopics = (item: TreeItem): TreeItem =>
+    item.kind === "topic" ? { ...item, requestNames: (show) => offerTopics(session, display, item.name, show) } : item;
   return {
     key: display.id,
     name: display.name,
@@ -56,19 +56,19 @@ function displayItem(
     description: describe(display, drawn),
     icon: drawn ? displayIcon(display.drawing) : "unknown",
     strong: true,
-    severally: true,
+    multiSelectable: true,
     muted: !drawn || !display.enabled,
     ...(drawn && display.enabled ? { level: worstWithin(session, display) } : {}),
-    ...(display.troubles.length > 0 ? { hint: [display.name, ...display.troubles.map(troubleText)].join("\n") } : {}),
+    ...(display.problems.length > 0 ? { hint: [display.name, ...display.problems.map(troubleText)].join("\n") } : {}),
     ...(drawn ? {} : { badge: strings.tree.notDrawn }),
     expanded: display.isGroup || (display.enabled && isOnlyContent(session, display)),
-    children: () => [...status, ...displayRows(display, session, set).map(offered), ...within()],
+    children: () => [...status, ...displayRows(display, session, set).map(withTopics), ...within()],
     set: (value) => set(display.enabledId, value),
   };
 }
 
 /** The message type of robot descriptions. */
-const TEXT = "std_msgs/msg/String";
+const DESCRIPTION_TYPE = "std_msgs/msg/String";
 
 /** Asks the server for the topics that suit a row of a display, and passes them to `show`. */
 function offerTopics(
@@ -80,14 +80,14 @@ function offerTopics(
   const { configuration } = session;
   const own = display.rows.find(row)?.topics;
   const words = own?.words ?? [];
-  const named = (topic: string): boolean => words.length === 0 || words.some((word) => topic.toLowerCase().includes(word));
-  const forget = configuration.offered.on(({ classes, topics }) => {
+  const matchesWords = (topic: string): boolean => words.length === 0 || words.some((word) => topic.toLowerCase().includes(word));
+  const forget = configuration.choicesArrived.on(({ classes, topics }) => {
     forget();
     const known = own?.messages ?? classes.find((each) => each.cls === display.cls)?.messages ?? [];
-    const messages = known.length > 0 ? known : [TEXT];
-    show(topics.filter(({ topic, message }) => messages.includes(message) && named(topic)).map(({ topic }) => topic));
+    const messages = known.length > 0 ? known : [DESCRIPTION_TYPE];
+    show(topics.filter(({ topic, message }) => messages.includes(message) && matchesWords(topic)).map(({ topic }) => topic));
   });
-  configuration.askChoices();
+  configuration.requestChoices();
 }
 
 function isDrawn(display: DisplayState): boolean {

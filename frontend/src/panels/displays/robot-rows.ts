@@ -35,7 +35,7 @@ export function displayRows(display: DisplayState, session: Session, set: SetVal
 }
 
 /** Returns the keys of a link's row, or of its joint's row, and of the rows above; null if it has none. */
-export function linkPath(display: DisplayState, session: Session, link: string): string[] | null {
+export function linkRowPath(display: DisplayState, session: Session, link: string): string[] | null {
   const robot = session.robots.get(display.id);
   if (!robot || !display.rows.find("Links")) return null;
   return new RobotTree(display, session, robot, () => undefined).pathTo(link);

@@ -3,7 +3,7 @@ import { formOf } from "./default-layout";
 
 const SCENE = "scene";
 /** Pixels; if less would remain for the scene, the dock's own distribution stays. */
-const LEAST_SCENE = 160;
+const MIN_SCENE_WIDTH = 160;
 
 /**
  * Keeps the widths of the columns beside the scene when panels are opened and closed: the scene gets or gives the
@@ -13,29 +13,29 @@ const LEAST_SCENE = 160;
  * window is closed.
  */
 export class ColumnWidths {
-  private known = new Map<string, number>();
+  private widths = new Map<string, number>();
 
   constructor(private readonly api: DockviewApi) {}
 
   /** Remembers the current widths as the ones to keep. */
-  take(): void {
-    this.known = new Map(this.api.groups.map(({ id, width }) => [id, width]));
+  remember(): void {
+    this.widths = new Map(this.api.groups.map(({ id, width }) => [id, width]));
   }
 
   /** Restores the widths of the remaining columns after columns were added or removed. */
-  follow(): void {
+  restoreAfterChange(): void {
     const { groups } = this.api;
-    const isSame = groups.length === this.known.size && groups.every(({ id }) => this.known.has(id));
-    if (!isSame && this.known.size > 0 && formOf(this.api) === "wide") this.restore();
-    this.take();
+    const isSame = groups.length === this.widths.size && groups.every(({ id }) => this.widths.has(id));
+    if (!isSame && this.widths.size > 0 && formOf(this.api) === "wide") this.restore();
+    this.remember();
   }
 
   private restore(): void {
     const columns = this.columns();
-    const scene = columns.findIndex((group) => holdsScene(group));
-    const widths = columns.map(({ id, width }) => this.known.get(id) ?? width);
+    const scene = columns.findIndex((group) => hasScene(group));
+    const widths = columns.map(({ id, width }) => this.widths.get(id) ?? width);
     const rest = this.api.width - widths.reduce((sum, width, i) => (i === scene ? sum : sum + width), 0);
-    if (scene < 0 || rest < LEAST_SCENE) return;
+    if (scene < 0 || rest < MIN_SCENE_WIDTH) return;
     widths[scene] = rest;
     // Each column takes its width from the last one, which therefore ends with its own width, too.
     for (const [i, group] of columns.slice(0, -1).entries()) group.api.setSize({ width: widths[i] ?? group.width });
@@ -44,17 +44,17 @@ export class ColumnWidths {
   /** Returns one group of each column, from the left; for the scene's column, the scene's group. */
   private columns(): DockviewGroupPanel[] {
     const boxes = this.api.groups.map((group) => ({ group, box: group.element.getBoundingClientRect() }));
-    const scene = boxes.find(({ group }) => holdsScene(group))?.box;
+    const scene = boxes.find(({ group }) => hasScene(group))?.box;
     const found: typeof boxes = [];
     for (const each of boxes.sort((a, b) => a.box.left - b.box.left)) {
       const { group, box } = each;
       const isOver = (other: DOMRect): boolean => box.left < other.right - 1 && other.left < box.right - 1;
-      if (holdsScene(group) || !(scene && isOver(scene)) && !found.some((other) => isOver(other.box))) found.push(each);
+      if (hasScene(group) || !(scene && isOver(scene)) && !found.some((other) => isOver(other.box))) found.push(each);
     }
     return found.map(({ group }) => group);
   }
 }
 
-function holdsScene(group: DockviewGroupPanel): boolean {
+function hasScene(group: DockviewGroupPanel): boolean {
   return group.panels.some(({ id }) => id === SCENE);
 }

@@ -2,7 +2,7 @@ import type { AddPanelOptions, Direction, DockviewApi } from "dockview";
 import { strings } from "../../strings";
 import type { PanelId } from "../panel";
 
-interface Home {
+interface Placement {
   /** Where the panel opens: next to the first of these panels that is open. */
   beside: readonly (readonly [PanelId, Direction])[];
   width?: number;
@@ -11,7 +11,7 @@ interface Home {
 }
 
 /** Right of the scene, above the panels there. */
-const RIGHT: Home["beside"] = [
+const RIGHT: Placement["beside"] = [
   ["joints", "above"],
   ["diagnostics", "above"],
   ["scene", "right"],
@@ -19,15 +19,15 @@ const RIGHT: Home["beside"] = [
 
 /** Wide panels that are read line by line share one place below the scene. */
 const BOTTOM: readonly PanelId[] = ["source", "diagram", "joint-table", "editing", "plot", "topics", "graph", "parameters", "log"];
-const BELOW: Home = { beside: [...BOTTOM.map((id) => [id, "within"] as const), ["scene", "below"]], height: 300 };
+const BELOW: Placement = { beside: [...BOTTOM.map((id) => [id, "within"] as const), ["scene", "below"]], height: 300 };
 /** The largest share of the dock's height that a panel requests. */
-const MOST_HEIGHT = 0.4;
+const MAX_HEIGHT_SHARE = 0.4;
 
 /** Pixels: one line, without a tab. */
 export const TIME_HEIGHT = 32;
 
 /** RViz's places: Displays on the left, the scene in the middle, everything else on the right. */
-const HOMES: Readonly<Record<PanelId, Home>> = {
+const PLACEMENTS: Readonly<Record<PanelId, Placement>> = {
   scene: { beside: [] },
   displays: { beside: [["links", "within"], ["scene", "left"]], width: 320 },
   views: {
@@ -121,7 +121,7 @@ const HOMES: Readonly<Record<PanelId, Home>> = {
 const NARROW = 900;
 /** Pixels; from this width panels have their preferred widths, below it somewhat less. */
 const ROOMY = 1280;
-const LEAST_SHARE = 0.7;
+const MIN_WIDTH_SHARE = 0.7;
 
 /**
  * In windows where panels share a group, those that open in front: the displays, and the panel that the page was opened
@@ -147,34 +147,34 @@ const TOOLS_HEIGHT = 34;
 /** Pixels; in a narrower window the history, which arrives later, is a row of its own in the foot. */
 const FOOT_WRAPS = 640;
 const FOOT_LINE = 30;
-const MOST_BELOW = 0.45;
+const MAX_BELOW_SHARE = 0.45;
 
 /** Returns the place of a panel on a phone: one group below the scene has all other panels. */
-function narrowHome(api: DockviewApi, id: PanelId): Home {
-  if (id === "scene") return HOMES.scene;
-  const others = (Object.keys(HOMES) as PanelId[]).filter((each) => each !== "scene" && each !== id);
-  const beside: Home["beside"] = [...others.map((each) => [each, "within"] as const), ["scene", "below"]];
+function narrowHome(api: DockviewApi, id: PanelId): Placement {
+  if (id === "scene") return PLACEMENTS.scene;
+  const others = (Object.keys(PLACEMENTS) as PanelId[]).filter((each) => each !== "scene" && each !== id);
+  const beside: Placement["beside"] = [...others.map((each) => [each, "within"] as const), ["scene", "below"]];
   const lines = TOOLS_HEIGHT + (window.innerWidth < FOOT_WRAPS ? FOOT_LINE : 0);
   const left = api.height - lines - SCENE_SHARE * window.innerHeight;
-  return { beside, height: Math.round(Math.min(left, api.height * MOST_BELOW)), inactive: !IN_FRONT.includes(id) };
+  return { beside, height: Math.round(Math.min(left, api.height * MAX_BELOW_SHARE)), inactive: !IN_FRONT.includes(id) };
 }
 
 /** Returns the place of a panel on a phone in landscape: one group beside the scene has all other panels. */
-function lowHome(api: DockviewApi, id: PanelId): Home {
+function lowHome(api: DockviewApi, id: PanelId): Placement {
   const { beside: near, inactive = false } = narrowHome(api, id);
-  const beside: Home["beside"] = near.map(([other, where]) => [other, where === "below" ? "right" : where]);
+  const beside: Placement["beside"] = near.map(([other, where]) => [other, where === "below" ? "right" : where]);
   return { beside, inactive, width: Math.round(Math.min(LOW_MOST, Math.max(LOW_LEAST, api.width * LOW_SHARE))) };
 }
 
-function wideHome(api: DockviewApi, id: PanelId): Home {
-  const home = { ...HOMES[id] };
-  if (home.width !== undefined) home.width = Math.round(home.width * Math.max(LEAST_SHARE, Math.min(1, api.width / ROOMY)));
-  if (home.height !== undefined) home.height = Math.min(home.height, Math.round(api.height * MOST_HEIGHT));
+function wideHome(api: DockviewApi, id: PanelId): Placement {
+  const home = { ...PLACEMENTS[id] };
+  if (home.width !== undefined) home.width = Math.round(home.width * Math.max(MIN_WIDTH_SHARE, Math.min(1, api.width / ROOMY)));
+  if (home.height !== undefined) home.height = Math.min(home.height, Math.round(api.height * MAX_HEIGHT_SHARE));
   return home;
 }
 
 /** The order in which open panels move to their default places. */
-export const USUAL: readonly PanelId[] = ["scene", "time", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "transformation", ...BOTTOM];
+export const DEFAULT_ORDER: readonly PanelId[] = ["scene", "time", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "transformation", ...BOTTOM];
 
 /** Adds panels at their default places. */
 export function addPanels(api: DockviewApi, ids: readonly PanelId[]): void {

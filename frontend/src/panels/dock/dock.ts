@@ -5,14 +5,14 @@ import type { TextStorage } from "../../storage";
 import { strings } from "../../strings";
 import type { Panel, PanelId } from "../panel";
 import { ColumnWidths } from "./column-widths";
-import { addPanels, formOf, USUAL, type Form } from "./default-layout";
+import { addPanels, formOf, DEFAULT_ORDER, type Form } from "./default-layout";
 import { DisplayPanels } from "./display-panels";
 import { FILE_PANELS } from "./file-panels";
 import { FrontTabs } from "./front-tabs";
 import type { Layout, Layouts } from "./layouts";
 import { PanelTab } from "./panel-tab";
 import { SceneTab } from "./scene-tab";
-import { takeTabKeys } from "./tab-keys";
+import { bindTabKeys } from "./tab-keys";
 import { TimeStrip } from "./time-strip";
 
 /** The dockable panels; the browser stores their arrangement for each file. */
@@ -20,9 +20,9 @@ export class Dock {
   /** A panel was opened, closed, moved or brought to the front. */
   readonly changed = new Signal();
   /** The arrangement was replaced: titles must be set again, and panels that depend on data opened or closed. */
-  readonly rearranged = new Signal();
+  readonly arrangementReplaced = new Signal();
   /** The panels that the file shows, for `reset`; null if it does not specify them. */
-  listed: readonly PanelName[] | null = null;
+  panelsOfFile: readonly PanelName[] | null = null;
   /** The file for which the arrangement is stored; null until one is known. */
   file: string | null = null;
   /** The panels of displays. */
@@ -57,7 +57,7 @@ export class Dock {
     this.strip = new TimeStrip(this.api, storage);
     this.sceneTab = new SceneTab(this.api);
     this.frontTabs = new FrontTabs(this.api);
-    takeTabKeys(parent, (id) => this.tabs.get(id));
+    bindTabKeys(parent, (id) => this.tabs.get(id));
     // Panels get their sizes when they are added; the dock's own observer would report its size too late.
     this.api.layout(parent.clientWidth, parent.clientHeight);
     this.form = formOf(this.api);
@@ -65,11 +65,11 @@ export class Dock {
     const latest = layouts.latest(this.form);
     if (latest && this.restore(latest)) this.file = latest.file;
     else this.reset();
-    this.followLone();
-    this.widths.take();
+    this.hideLoneTabs();
+    this.widths.remember();
     this.api.onDidLayoutChange(() => {
-      this.followLone();
-      this.widths.follow();
+      this.hideLoneTabs();
+      this.widths.restoreAfterChange();
       this.remember();
       this.changed.emit();
     });
@@ -92,7 +92,7 @@ export class Dock {
   open(id: PanelId): void {
     this.add(id);
     this.api.getPanel(id)?.api.setActive();
-    if (id === "time" && this.strip.isThere) this.strip.unfold(true);
+    if (id === "time" && this.strip.exists) this.strip.setUnfolded(true);
   }
 
   close(id: PanelId): void {
@@ -109,7 +109,7 @@ export class Dock {
   private retitle(): void {
     const wrong = this.api.panels.filter(({ id, title }) => this.panels.has(id) && title !== this.titleOf(id));
     for (const { id, api } of wrong) api.setTitle(this.titleOf(id));
-    if (wrong.length > 0) this.frontTabs.follow();
+    if (wrong.length > 0) this.frontTabs.update();
   }
 
   private titleOf(id: string): string {
@@ -121,8 +121,8 @@ export class Dock {
   reset(): void {
     const joints = this.api.getPanel("joints") !== undefined;
     this.build(["scene", "time", "displays", "links", "views", "tool-properties", "selection", "diagnostics", ...(joints ? (["joints"] as const) : [])]);
-    if (this.listed) this.showOnly(this.listed);
-    this.rearranged.emit();
+    if (this.panelsOfFile) this.showOnly(this.panelsOfFile);
+    this.arrangementReplaced.emit();
   }
 
   /** Shows the arrangement that the browser stores for a file; returns false if there is none. */
@@ -133,15 +133,15 @@ export class Dock {
       this.reset();
       return false;
     }
-    this.followLone();
+    this.hideLoneTabs();
     this.displayPanels.restore();
-    this.widths.take();
-    this.rearranged.emit();
+    this.widths.remember();
+    this.arrangementReplaced.emit();
     return true;
   }
 
   /** Stores the arrangement for this file from now on. */
-  keepFor(file: string): void {
+  storeFor(file: string): void {
     this.file = file;
     this.remember();
   }
@@ -152,7 +152,7 @@ export class Dock {
       if (panels.includes(id)) this.add(id);
       else this.close(id);
     }
-    this.widths.follow();
+    this.widths.restoreAfterChange();
   }
 
   private add(id: PanelId): void {
@@ -165,16 +165,16 @@ export class Dock {
     this.api.clear();
     addPanels(this.api, this.form !== "wide" ? [...ids.filter((id) => id !== "time"), ...ids.filter((id) => id === "time")] : ids);
     this.retitle();
-    this.followLone();
+    this.hideLoneTabs();
     this.displayPanels.restore();
-    this.widths.take();
+    this.widths.remember();
   }
 
   /** Hides the tabs of panels that are alone in their group and need no tab. */
-  private followLone(): void {
-    this.strip.follow();
-    this.sceneTab.follow(this.form !== "wide");
-    this.frontTabs.follow();
+  private hideLoneTabs(): void {
+    this.strip.update();
+    this.sceneTab.update(this.form !== "wide");
+    this.frontTabs.update();
   }
 
   /**
@@ -183,8 +183,8 @@ export class Dock {
   private changeForm(): void {
     this.form = formOf(this.api);
     if (this.file !== null && this.arrange(this.file)) return;
-    this.build(USUAL.filter((id) => this.isOpen(id)));
-    this.rearranged.emit();
+    this.build(DEFAULT_ORDER.filter((id) => this.isOpen(id)));
+    this.arrangementReplaced.emit();
   }
 
   private tab(id: string): PanelTab {
@@ -212,7 +212,7 @@ export class Dock {
   }
 
   private remember(): void {
-    if (this.file !== null) this.layouts.keep({ file: this.file, form: this.form, arrangement: this.api.toJSON() });
+    if (this.file !== null) this.layouts.store({ file: this.file, form: this.form, arrangement: this.api.toJSON() });
   }
 }
 

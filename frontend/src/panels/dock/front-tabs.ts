@@ -2,15 +2,15 @@ import type { DockviewApi } from "dockview";
 
 /** Keeps the tab of each front panel fully visible where a group's tabs do not fit into its bar. */
 export class FrontTabs {
-  private readonly sizes = new ResizeObserver(() => this.show());
+  private readonly resizeObserver = new ResizeObserver(() => this.show());
 
   constructor(private readonly api: DockviewApi) {}
 
   /** Scrolls the tab bars after the arrangement or the front panels may have changed. */
-  follow(): void {
-    this.sizes.disconnect();
+  update(): void {
+    this.resizeObserver.disconnect();
     // The dock's button for hidden tabs appears later and takes some of the bar's width.
-    for (const bar of this.bars()) this.sizes.observe(bar);
+    for (const bar of this.bars()) this.resizeObserver.observe(bar);
     this.show();
   }
 

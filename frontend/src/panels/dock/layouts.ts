@@ -11,7 +11,7 @@ export interface Layout {
 
 const KEY = "linkwright.layouts.3";
 /** The number of stored arrangements; beyond it, the browser drops the one used longest ago. */
-const MOST = 12;
+const MAX_LAYOUTS = 12;
 
 /** The arrangements of panels that the browser stores, one for each file and form of window. */
 export class Layouts {
@@ -26,23 +26,23 @@ export class Layouts {
     return this.read().find((each) => each.file === file && each.form === form) ?? null;
   }
 
-  keep(layout: Layout): void {
+  store(layout: Layout): void {
     // Read again each time: another tab may have stored another arrangement.
     const others = this.read().filter(({ file, form }) => file !== layout.file || form !== layout.form);
-    this.storage.setItem(KEY, JSON.stringify([layout, ...others].slice(0, MOST)));
+    this.storage.setItem(KEY, JSON.stringify([layout, ...others].slice(0, MAX_LAYOUTS)));
   }
 
   private read(): Layout[] {
     try {
-      const kept: unknown = JSON.parse(this.storage.getItem(KEY) ?? "[]");
-      return Array.isArray(kept) ? kept.filter(isLayout) : [];
+      const stored: unknown = JSON.parse(this.storage.getItem(KEY) ?? "[]");
+      return Array.isArray(stored) ? stored.filter(isLayout) : [];
     } catch {
       return [];
     }
   }
 }
 
-function isLayout(kept: unknown): kept is Layout {
-  const { file, form, arrangement } = (kept ?? {}) as Partial<Layout>;
+function isLayout(value: unknown): value is Layout {
+  const { file, form, arrangement } = (value ?? {}) as Partial<Layout>;
   return typeof file === "string" && typeof form === "string" && typeof arrangement === "object";
 }

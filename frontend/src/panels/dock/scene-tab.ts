@@ -7,7 +7,7 @@ export class SceneTab {
   constructor(private readonly api: DockviewApi) {}
 
   /** Updates the tab after the arrangement or the form of the window may have changed. */
-  follow(narrow: boolean): void {
+  update(narrow: boolean): void {
     const group = this.api.getPanel("scene")?.group;
     const alone = narrow && group?.panels.length === 1 ? group : null;
     if (alone === this.hidden) return;

@@ -7,7 +7,7 @@ const CLOSE = ["Delete", "Backspace"];
  *
  * The dock's own keys would also close panels that must stay.
  */
-export function takeTabKeys(dock: HTMLElement, tabOf: (panel: string) => PanelTab | undefined): void {
+export function bindTabKeys(dock: HTMLElement, tabOf: (panel: string) => PanelTab | undefined): void {
   dock.addEventListener(
     "keydown",
     (event) => {

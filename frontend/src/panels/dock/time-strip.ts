@@ -4,7 +4,7 @@ import type { TextStorage } from "../../storage";
 import { TIME_HEIGHT } from "./default-layout";
 
 /** Pixels: the dock's default for groups. */
-const LEAST_HEIGHT = 100;
+const MIN_GROUP_HEIGHT = 100;
 const KEY = "linkwright.time-fields";
 
 /**
@@ -25,7 +25,7 @@ export class TimeStrip {
   }
 
   /** Whether there is a strip, folded or not. */
-  get isThere(): boolean {
+  get exists(): boolean {
     return this.strip !== null;
   }
 
@@ -34,7 +34,7 @@ export class TimeStrip {
   }
 
   /** Shows or hides the strip. */
-  unfold(unfolded: boolean): void {
+  setUnfolded(unfolded: boolean): void {
     this.unfolded = unfolded;
     this.storage.setItem(KEY, unfolded ? "shown" : "hidden");
     this.show();
@@ -42,7 +42,7 @@ export class TimeStrip {
   }
 
   /** Updates the strip after the arrangement may have changed. */
-  follow(): void {
+  update(): void {
     const group = this.api.getPanel("time")?.group;
     const strip = group?.panels.length === 1 ? group : null;
     if (strip === this.strip) return;
@@ -51,7 +51,7 @@ export class TimeStrip {
       this.strip.api.setVisible(true);
       this.strip.header.hidden = false;
       this.strip.element.classList.remove("strip");
-      this.strip.api.setConstraints({ minimumHeight: LEAST_HEIGHT, maximumHeight: Number.MAX_SAFE_INTEGER });
+      this.strip.api.setConstraints({ minimumHeight: MIN_GROUP_HEIGHT, maximumHeight: Number.MAX_SAFE_INTEGER });
     }
     this.strip = strip;
     if (strip) {

@@ -16,7 +16,7 @@ export class EditOutcome {
   readonly element: HTMLElement;
   private readonly text = h("div", { class: "edit-text", role: "status", tabIndex: 0 });
   private readonly apply: HTMLButtonElement;
-  private readonly drop: HTMLButtonElement;
+  private readonly discard: HTMLButtonElement;
   private readonly all: HTMLButtonElement;
   private readonly undo: HTMLButtonElement;
   private readonly redo: HTMLButtonElement;
@@ -24,11 +24,11 @@ export class EditOutcome {
   constructor(private readonly editing: EditingState) {
     const words = strings.editing;
     this.apply = button(words.applyHint, () => editing.apply(), "tool framed primary", words.apply);
-    this.drop = button(words.dropHint, () => editing.reset(), "tool framed", words.drop);
+    this.discard = button(words.dropHint, () => editing.reset(), "tool framed", words.drop);
     this.all = button(words.allHint, () => editing.changeAll(), "tool framed", words.all);
     this.undo = button(words.undo, () => editing.undo(), "tool bare", icon("undo"));
     this.redo = button(words.redo, () => editing.redo(), "tool bare", icon("redo"));
-    const bar = h("div", { class: "edit-bar" }, this.apply, this.drop, this.all, h("span", { class: "spacer" }), this.undo, this.redo);
+    const bar = h("div", { class: "edit-bar" }, this.apply, this.discard, this.all, h("span", { class: "spacer" }), this.undo, this.redo);
     this.element = h("div", { class: "edit-outcome" }, this.text, bar);
     editing.changed.on(() => this.show());
     editing.draftChanged.on(() => this.show());
@@ -40,13 +40,13 @@ export class EditOutcome {
     const words = strings.editing;
     const { preview, refusal, isOpen, written } = editing;
     this.apply.disabled = !isOpen || (preview?.files.length ?? 0) === 0;
-    this.drop.disabled = !isOpen;
-    this.all.hidden = !isOpen || preview?.refusal?.code !== "EDIT104" || editing.isTogether;
+    this.discard.disabled = !isOpen;
+    this.all.hidden = !isOpen || preview?.refusal?.code !== "EDIT104" || editing.isChangeOfAll;
     this.undo.disabled = !editing.canUndo;
     this.redo.disabled = !editing.canRedo;
-    if (refusal) this.text.replaceChildren(told(refusal));
-    else if (preview?.refusal) this.text.replaceChildren(told(preview.refusal));
-    else if (preview) this.text.replaceChildren(...also(preview.also), ...preview.files.map(diff));
+    if (refusal) this.text.replaceChildren(refusalElement(refusal));
+    else if (preview?.refusal) this.text.replaceChildren(refusalElement(preview.refusal));
+    else if (preview) this.text.replaceChildren(...alsoElement(preview.also), ...preview.files.map(diff));
     else if (isOpen) this.text.replaceChildren(h("p", { class: "hint" }, words.looking));
     else if (written.length > 0) this.text.replaceChildren(h("p", { class: "hint" }, words.written(written.map((file) => shortPath(file)).join(", "))));
     else this.text.replaceChildren(h("p", { class: "hint" }, words.idle));
@@ -54,7 +54,7 @@ export class EditOutcome {
   }
 }
 
-function also(names: readonly string[]): HTMLElement[] {
+function alsoElement(names: readonly string[]): HTMLElement[] {
   return names.length === 0 ? [] : [h("p", { class: "edit-also" }, strings.editing.also(names.join(", ")))];
 }
 
@@ -64,7 +64,7 @@ function diff({ file, diff: lines }: EditedFile): HTMLElement {
     const kind = kinds[sign] ?? "around";
     if (kind === "at" || kind === "around") return h("span", { class: kind }, `${sign}${before}\n`);
     const [from, to] = [Math.max(0, before.length - NEAR_BEFORE), Math.min(after.length, NEAR_AFTER)];
-    const parts = [far(before.slice(0, from)), before.slice(from), h("mark", {}, changed), after.slice(0, to), far(after.slice(to))];
+    const parts = [distantText(before.slice(0, from)), before.slice(from), h("mark", {}, changed), after.slice(0, to), distantText(after.slice(to))];
     return h("span", { class: kind }, sign, ...parts, "\n");
   });
   const isLong = lines.some((line) => line.length > LONGEST_WHOLE);
@@ -72,11 +72,11 @@ function diff({ file, diff: lines }: EditedFile): HTMLElement {
 }
 
 /** Returns the distant part of a line, which only a high panel with short lines shows. */
-function far(text: string): HTMLElement | null {
+function distantText(text: string): HTMLElement | null {
   return text === "" ? null : h("span", { class: "far" }, text);
 }
 
-function told({ message, file, line, notes, hints }: DiagnosticItem): HTMLElement {
+function refusalElement({ message, file, line, notes, hints }: DiagnosticItem): HTMLElement {
   const at = (path: string | null, number: number | null): string => (path === null || number === null ? "" : ` (${shortPath(path)}:${number})`);
   return h(
     "div",

@@ -7,19 +7,19 @@ import { strings } from "../../strings";
 import { clamp, formatFixed, parseNumber } from "../../tree/numbers";
 
 /** ms for which positions from the server do not move the slider after the user moved it. */
-const HANDS_OFF_MS = 250;
+const SERVER_DELAY_MS = 250;
 
 /**
  * The number of characters at the end of a name that remain visible in a narrow panel: names of related joints begin
  * alike, and often end in `_joint`.
  */
-const END = 14;
+const VISIBLE_END = 14;
 /** Names up to this length are never cut. */
-const SHORT = 10;
+const UNCUT_LENGTH = 10;
 
 /** Splits a name into a part that may be cut, and its end, which always remains visible. */
-export function halvesOf(name: string): readonly [string, string] {
-  const cut = name.length > SHORT ? name.length - Math.min(END, Math.floor(name.length / 2)) : name.length;
+export function splitName(name: string): readonly [string, string] {
+  const cut = name.length > UNCUT_LENGTH ? name.length - Math.min(VISIBLE_END, Math.floor(name.length / 2)) : name.length;
   return [name.slice(0, cut), name.slice(cut)];
 }
 
@@ -38,10 +38,10 @@ export class JointRow {
   constructor(
     readonly joint: JointControl,
     private readonly angles: AngleUnits,
-    private readonly moved: (position: number) => void,
+    private readonly onMoved: (position: number) => void,
   ) {
     const follower = joint.mimic !== null;
-    const halves = halvesOf(joint.name).map((part) => h("span", {}, part));
+    const halves = splitName(joint.name).map((part) => h("span", {}, part));
     // Screen readers get the whole name from the slider and the field.
     const name = h("span", { class: "joint-name", title: joint.name, aria: { hidden: "true" } }, ...halves);
     const mimic = follower
@@ -56,7 +56,7 @@ export class JointRow {
     this.slider.disabled = this.field.disabled = follower;
     this.slider.setAttribute("aria-label", joint.name);
     this.field.setAttribute("aria-label", strings.joints.position(joint.name));
-    this.listen();
+    this.bindInputs();
     this.element = h(
       "div",
       { class: follower ? "joint follower" : "joint", data: { joint: joint.name } },
@@ -79,13 +79,13 @@ export class JointRow {
 
   /** Shows a position from the server, except while the user is moving the joint. */
   setPosition(position: number): void {
-    if (this.dragging || performance.now() - this.touchedAt < HANDS_OFF_MS) return;
+    if (this.dragging || performance.now() - this.touchedAt < SERVER_DELAY_MS) return;
     this.position = position;
     this.show();
   }
 
-  private listen(): void {
-    this.slider.addEventListener("input", () => this.take(Number(this.slider.value)));
+  private bindInputs(): void {
+    this.slider.addEventListener("input", () => this.move(Number(this.slider.value)));
     this.slider.addEventListener("pointerdown", () => (this.dragging = true));
     for (const end of ["pointerup", "pointercancel", "blur"]) {
       this.slider.addEventListener(end, () => (this.dragging = false));
@@ -95,8 +95,8 @@ export class JointRow {
     this.field.addEventListener("keydown", (event) => {
       if (event.key === "Enter") this.readField();
       else if (event.key === "Escape") this.show(true);
-      else if (event.key === "ArrowUp") this.take(this.position + this.step);
-      else if (event.key === "ArrowDown") this.take(this.position - this.step);
+      else if (event.key === "ArrowUp") this.move(this.position + this.step);
+      else if (event.key === "ArrowDown") this.move(this.position - this.step);
       else return;
       event.preventDefault();
       event.stopPropagation();
@@ -107,14 +107,14 @@ export class JointRow {
     if (this.field.value === this.format(this.position)) return;
     const value = parseNumber(this.field.value);
     if (value === null) this.show(true);
-    else this.take(value / this.scale);
+    else this.move(value / this.scale);
   }
 
-  private take(position: number): void {
+  private move(position: number): void {
     this.touchedAt = performance.now();
     this.position = clamp(position, this.joint.lower, this.joint.upper);
     this.show(true);
-    this.moved(this.position);
+    this.onMoved(this.position);
   }
 
   private show(force = false): void {

@@ -8,7 +8,7 @@ import { PoseBar } from "./pose-bar";
 import { SweepBar } from "./sweep-bar";
 
 /** The number of joints from which on the filter is shown. */
-const FILTER_FROM = 10;
+const MIN_FILTERED = 10;
 
 /** The sliders of joint_state_publisher_gui, with named poses and a sweep. */
 export class JointsPanel implements Panel {
@@ -44,7 +44,7 @@ export class JointsPanel implements Panel {
     const none = this.rows.length === 0;
     if (none) this.list.append(h("p", { class: "empty" }, strings.joints.none));
     this.bars.hidden = none;
-    this.filter.hidden = this.rows.length < FILTER_FROM;
+    this.filter.hidden = this.rows.length < MIN_FILTERED;
     if (this.filter.hidden) this.filter.value = "";
     this.applyFilter();
     this.update();

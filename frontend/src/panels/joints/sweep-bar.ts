@@ -35,7 +35,7 @@ export class SweepBar {
       h("span", { class: "bar-label", title: words.hint }, words.label),
       this.order,
       this.speed,
-      h("span", { class: "bar-buttons" }, handsOnSwitch(joints), this.start),
+      h("span", { class: "bar-buttons" }, dragSwitch(joints), this.start),
     );
     this.element = h("div", { class: "joint-bar sweep", role: "group", aria: { label: words.label } }, row);
     joints.controlsChanged.on(() => this.end());
@@ -78,15 +78,15 @@ export class SweepBar {
 }
 
 /** Returns the switch for dragging links without Alt, for touch screens and for frequent use. */
-function handsOnSwitch(joints: JointsState): HTMLElement {
+function dragSwitch(joints: JointsState): HTMLElement {
   const toggle = (): void => {
-    joints.handsOn = !joints.handsOn;
+    joints.dragsWithoutAlt = !joints.dragsWithoutAlt;
     show();
   };
   const element = button(strings.description.handsOn, toggle, "tool bare", icon("hand"));
   const show = (): void => {
-    element.classList.toggle("on", joints.handsOn);
-    element.setAttribute("aria-pressed", String(joints.handsOn));
+    element.classList.toggle("on", joints.dragsWithoutAlt);
+    element.setAttribute("aria-pressed", String(joints.dragsWithoutAlt));
   };
   show();
   return element;

@@ -20,14 +20,14 @@ export class ModelDialog {
     this.search.placeholder = words.search;
     this.search.setAttribute("aria-label", words.search);
     this.search.addEventListener("input", () => this.fill());
-    for (const each of [this.search, this.list]) each.addEventListener("keydown", (event) => this.keyed(event));
+    for (const each of [this.search, this.list]) each.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.dialog = new Dialog(
       words.models,
       [h("div", { class: "search-box" }, icon("search"), this.search), this.list],
       [{ label: strings.shell.cancel }, { label: words.choose, main: true, run: () => this.accept() }],
       "add-dialog",
     );
-    const forget = modelling.offered.on((models) => {
+    const forget = modelling.modelsArrived.on((models) => {
       this.models = models;
       this.fill();
     });
@@ -37,7 +37,7 @@ export class ModelDialog {
   open(): void {
     this.dialog.open(this.search);
     this.fill();
-    this.modelling.askModels();
+    this.modelling.requestModels();
   }
 
   private fill(): void {
@@ -71,7 +71,7 @@ export class ModelDialog {
     });
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     if (event.key === "Enter" && event.target !== this.search && this.accept()) this.dialog.close();
     const step = event.key === "ArrowDown" ? 1 : event.key === "ArrowUp" ? -1 : 0;
     const at = this.shown.findIndex((model) => model === this.chosen) + step;

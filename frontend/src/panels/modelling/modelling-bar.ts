@@ -39,7 +39,7 @@ export class ModellingBar {
     commands: WorldCommands,
   ) {
     const words = strings.modelling;
-    for (const [kind, name] of PALETTE) this.palette.set(kind, this.adder(kind, name));
+    for (const [kind, name] of PALETTE) this.palette.set(kind, this.addButton(kind, name));
     this.palette.set("model", tool(words.addModel, "library", () => new ModelDialog(modelling).open()));
     for (const [mode, name] of MODES) {
       this.modes.set(mode, tool(withKeys(words.modes[mode], WORLD_KEYS[mode]), name, () => (modelling.gizmo = mode)));
@@ -60,11 +60,11 @@ export class ModellingBar {
   private show(): void {
     const { modelling } = this;
     this.element.hidden = !modelling.active;
-    for (const [kind, each] of this.palette) press(each, modelling.placing?.kind === kind);
-    for (const [mode, each] of this.modes) press(each, modelling.gizmo === mode);
+    for (const [kind, each] of this.palette) setPressed(each, modelling.placing?.kind === kind);
+    for (const [mode, each] of this.modes) setPressed(each, modelling.gizmo === mode);
     const scale = this.modes.get("scale");
     if (scale) scale.disabled = modelling.selected.length > 0 && !modelling.canScale;
-    press(this.snap, modelling.snapping.enabled);
+    setPressed(this.snap, modelling.snapping.enabled);
     this.undo.disabled = !modelling.canUndo;
     this.redo.disabled = !modelling.canRedo;
     this.save.classList.toggle("unsaved", modelling.unsaved);
@@ -74,7 +74,7 @@ export class ModellingBar {
    * Returns a button that adds an entity: a click selects it for placing, dragging drops it onto the ground, and the
    * keyboard adds it at the centre of the scene.
    */
-  private adder(kind: Exclude<NewKind, "model">, name: IconName): HTMLButtonElement {
+  private addButton(kind: Exclude<NewKind, "model">, name: IconName): HTMLButtonElement {
     const { modelling } = this;
     const words = strings.modelling;
     const placing: Placing = { kind, address: "" };
@@ -102,7 +102,7 @@ function tool(label: string, name: IconName, run: () => void): HTMLButtonElement
   return button(label, run, "scene-tool small", icon(name));
 }
 
-function press(element: HTMLButtonElement, on: boolean): void {
+function setPressed(element: HTMLButtonElement, on: boolean): void {
   element.setAttribute("aria-pressed", String(on));
   element.classList.toggle("active", on);
 }

@@ -24,20 +24,20 @@ export const WORLD_KEYS = {
 
 /** Elements in which keys enter text. */
 const TEXT = "input:not([type=checkbox]):not([type=range]), textarea, select, [contenteditable]";
-const OTHERS = "dialog, [role=menu]";
+const OVERLAYS = "dialog, [role=menu]";
 /** Panels have keys of their own; the world's keys also work in the World panel. */
-const ELSEWHERE = ".panel:not(.world-panel)";
+const OTHER_PANELS = ".panel:not(.world-panel)";
 
 /** The commands for modelling the world, as keys and buttons run them. */
 export class WorldCommands {
-  private readonly runs: Readonly<Record<keyof typeof WORLD_KEYS, () => void>>;
+  private readonly actions: Readonly<Record<keyof typeof WORLD_KEYS, () => void>>;
 
   /** `escape` cancels the drag or the placing in progress. */
   constructor(
     private readonly modelling: Modelling,
     escape: () => void,
   ) {
-    this.runs = {
+    this.actions = {
       translate: () => (modelling.gizmo = "translate"),
       rotate: () => (modelling.gizmo = "rotate"),
       scale: () => (modelling.gizmo = "scale"),
@@ -68,11 +68,11 @@ export class WorldCommands {
   }
 
   /** Binds the keys, with precedence over those of tools, views and the File menu while the world is modelled. */
-  takeKeys(): void {
+  bindKeys(): void {
     document.addEventListener(
       "keydown",
       (event) => {
-        if (!this.modelling.active || !this.pressed(event)) return;
+        if (!this.modelling.active || !this.runKey(event)) return;
         event.preventDefault();
         event.stopImmediatePropagation();
       },
@@ -80,17 +80,17 @@ export class WorldCommands {
     );
   }
 
-  private pressed(event: KeyboardEvent): boolean {
+  private runKey(event: KeyboardEvent): boolean {
     const names = Object.keys(WORLD_KEYS) as (keyof typeof WORLD_KEYS)[];
     const name = names.find((each) => matches(event, WORLD_KEYS[each]));
     const target = event.target instanceof Element ? event.target : null;
-    if (name === undefined || target?.closest(OTHERS) || target?.closest(ELSEWHERE)) return false;
+    if (name === undefined || target?.closest(OVERLAYS) || target?.closest(OTHER_PANELS)) return false;
     if (target?.closest(TEXT)) {
       if (name !== "save" && name !== "saveAs") return false;
       if (target instanceof HTMLElement) target.blur(); // what is typed counts
     }
     if (name === "copy" && getSelection()?.isCollapsed === false) return false;
-    this.runs[name]();
+    this.actions[name]();
     return true;
   }
 }

@@ -16,7 +16,7 @@ interface Row {
 export class MessageTree {
   readonly element = h("div", { class: "message-tree" });
   private readonly rows = new Map<string, Row>();
-  private readonly opened = new Set<string>();
+  private readonly openPaths = new Set<string>();
   private fields: readonly MessageField[] = [];
 
   /** `plot` is called with the path of a numeric field whose plot button is clicked. */
@@ -24,7 +24,7 @@ export class MessageTree {
 
   show(fields: readonly MessageField[]): void {
     // Short messages are unfolded from the start.
-    if (this.fields.length === 0 && fields.length <= 3) for (const { name } of fields) this.opened.add(name);
+    if (this.fields.length === 0 && fields.length <= 3) for (const { name } of fields) this.openPaths.add(name);
     this.fields = fields;
     this.fill(this.element, fields, "", null);
   }
@@ -34,7 +34,7 @@ export class MessageTree {
       const path = field.name.startsWith("[") ? `${prefix}${field.name}` : prefix === "" ? field.name : `${prefix}.${field.name}`;
       const row = this.row(path, field);
       if (row.value.textContent !== field.value) row.value.textContent = field.value;
-      const open = this.opened.has(path);
+      const open = this.openPaths.has(path);
       row.toggle?.setAttribute("aria-expanded", String(open));
       row.children.hidden = !open;
       if (open) {
@@ -73,7 +73,7 @@ export class MessageTree {
   }
 
   private toggle(path: string): void {
-    if (!this.opened.delete(path)) this.opened.add(path);
+    if (!this.openPaths.delete(path)) this.openPaths.add(path);
     this.fill(this.element, this.fields, "", null);
   }
 }

@@ -1,5 +1,5 @@
 import { h } from "../../dom";
-import { layered, type PlacedBox, type Route } from "../../state/monitor/graph-layout";
+import { layOutLayers, type PlacedBox, type Route } from "../../state/monitor/graph-layout";
 import type { DrawnGraph, GraphVertex } from "../../state/monitor/graph-model";
 import { PanZoom } from "../../widgets/pan-zoom";
 
@@ -20,22 +20,22 @@ export class NodeGraphDrawing {
    * The part of the graph in view, which is restored when the graph or the panel changes: a legible part, the whole
    * graph, or what the user moved to.
    */
-  private shows: "legible" | "all" | "chosen" = "legible";
+  private viewMode: "legible" | "all" | "chosen" = "legible";
   private boxes: ReadonlyMap<string, PlacedBox> = new Map();
   private marked: string | null = null;
 
   constructor(
     label: string,
-    private readonly chosen: (vertex: GraphVertex | null) => void,
+    private readonly onChosen: (vertex: GraphVertex | null) => void,
   ) {
     this.element.setAttribute("aria-label", label);
     const svg = make("svg", {});
     svg.append(arrowHeads(), this.scene);
     this.element.append(svg);
-    this.pan = new PanZoom(this.element, (x, y, scale) => this.moved(x, y, scale), () => this.fit());
-    this.element.addEventListener("click", (event) => this.clicked(event.target as Element));
+    this.pan = new PanZoom(this.element, (x, y, scale) => this.onMoved(x, y, scale), () => this.fit());
+    this.element.addEventListener("click", (event) => this.onClick(event.target as Element));
     this.element.addEventListener("keydown", (event) => {
-      if (event.key === "Escape") chosen(null);
+      if (event.key === "Escape") onChosen(null);
     });
     new ResizeObserver(() => {
       this.place();
@@ -47,7 +47,7 @@ export class NodeGraphDrawing {
     this.graph = graph;
     if (this.measure) this.measure.font = `12px ${getComputedStyle(document.body).fontFamily}`;
     const boxes = graph.vertices.map((vertex) => ({ id: vertex.id, width: this.widthOf(vertex), height: BOX_HEIGHT }));
-    const layout = layered(boxes, graph.edges);
+    const layout = layOutLayers(boxes, graph.edges);
     this.size = [layout.width, layout.height];
     this.boxes = layout.boxes;
     const vertices = new Map(graph.vertices.map((vertex) => [vertex.id, vertex]));
@@ -77,16 +77,16 @@ export class NodeGraphDrawing {
   /** Fits the whole graph into the panel. */
   fit(): void {
     if (this.element.clientWidth === 0) return;
-    this.pan.show(...this.size);
-    this.shows = "all";
+    this.pan.fitImage(...this.size);
+    this.viewMode = "all";
   }
 
   private place(): void {
-    if (this.shows === "all") this.fit();
-    if (this.shows !== "legible" || this.element.clientWidth === 0) return;
+    if (this.viewMode === "all") this.fit();
+    if (this.viewMode !== "legible" || this.element.clientWidth === 0) return;
     const box = this.boxes.get(this.marked ?? "") ?? this.busiest();
-    this.pan.open(...this.size, TEXT_PX, [box?.x ?? 0, box?.y ?? 0]);
-    this.shows = "legible";
+    this.pan.showLegibly(...this.size, TEXT_PX, [box?.x ?? 0, box?.y ?? 0]);
+    this.viewMode = "legible";
   }
 
   /** Returns the box of the vertex with the most edges. */
@@ -114,7 +114,7 @@ export class NodeGraphDrawing {
       if (event.key !== "Enter" && event.key !== " ") return;
       event.preventDefault();
       event.stopPropagation();
-      this.chosen(vertex ?? null);
+      this.onChosen(vertex ?? null);
     });
     return shape;
   }
@@ -129,14 +129,14 @@ export class NodeGraphDrawing {
     return Math.ceil(this.measure?.measureText(text).width ?? text.length * 7) + PADDING;
   }
 
-  private clicked(target: Element): void {
-    if (this.pan.dragged) return;
+  private onClick(target: Element): void {
+    if (this.pan.wasDragged) return;
     const id = target.closest<SVGElement>("[data-id]")?.dataset["id"];
-    this.chosen(this.graph.vertices.find((vertex) => vertex.id === id) ?? null);
+    this.onChosen(this.graph.vertices.find((vertex) => vertex.id === id) ?? null);
   }
 
-  private moved(x: number, y: number, scale: number): void {
-    this.shows = "chosen";
+  private onMoved(x: number, y: number, scale: number): void {
+    this.viewMode = "chosen";
     this.scene.setAttribute("transform", `translate(${x} ${y}) scale(${scale})`);
   }
 }

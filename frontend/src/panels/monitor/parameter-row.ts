@@ -30,7 +30,7 @@ export class ParameterLine {
       this.editor.classList.add("numeric");
     }
     this.slider = this.makeSlider();
-    this.listen();
+    this.bindInputs();
     const range = row.minimum === "" ? "" : words.range(row.minimum, row.maximum, row.step);
     const hint = [row.description, row.constraints].filter((text) => text !== "").join(" ");
     const notes = [words.kinds[row.kind], row.read_only ? words.readOnly : "", range].filter((text) => text !== "");
@@ -57,12 +57,12 @@ export class ParameterLine {
   show(row: ParameterRow): void {
     this.row = row;
     if (row.kind === "bool") this.editor.checked = row.values[0] === "true";
-    else if (document.activeElement !== this.editor) this.editor.value = this.text();
+    else if (document.activeElement !== this.editor) this.editor.value = this.editorText();
     if (this.slider && document.activeElement !== this.slider) this.slider.value = row.values[0] ?? "0";
   }
 
   /** Shows the result of setting the parameter: its current value, and the reason for a refusal. */
-  settled(successful: boolean, reason: string): void {
+  showResult(successful: boolean, reason: string): void {
     this.problem.hidden = successful;
     this.problem.textContent = successful ? "" : reason || strings.monitor.parameters.refused;
     this.element.classList.toggle("wrong", !successful);
@@ -71,7 +71,7 @@ export class ParameterLine {
     if (this.slider) this.slider.value = this.row.values[0] ?? "0";
   }
 
-  private text(): string {
+  private editorText(): string {
     return this.row.kind === "not_set" ? strings.monitor.parameters.notSet : parameterText(this.row.kind, this.row.values);
   }
 
@@ -89,25 +89,25 @@ export class ParameterLine {
     return slider;
   }
 
-  private listen(): void {
+  private bindInputs(): void {
     if (this.row.kind === "bool") {
       this.editor.addEventListener("change", () => this.send([String(this.editor.checked)]));
       return;
     }
-    this.editor.addEventListener("change", () => this.take());
+    this.editor.addEventListener("change", () => this.sendText());
     this.editor.addEventListener("keydown", (event) => {
       if (event.key === "Escape") {
-        this.editor.value = this.text();
-        this.settled(true, "");
+        this.editor.value = this.editorText();
+        this.showResult(true, "");
         this.editor.blur();
-      } else if (event.key === "Enter") this.take();
+      } else if (event.key === "Enter") this.sendText();
     });
   }
 
-  private take(): void {
-    if (this.editor.value === this.text()) return;
+  private sendText(): void {
+    if (this.editor.value === this.editorText()) return;
     const values = parameterValues(this.row.kind, this.editor.value);
-    if (values === null) this.settled(false, strings.monitor.parameters.unreadable);
+    if (values === null) this.showResult(false, strings.monitor.parameters.unreadable);
     else this.send(values);
   }
 

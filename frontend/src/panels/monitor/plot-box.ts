@@ -33,8 +33,8 @@ export class PlotBox {
       this.legend,
       h("span", { class: "spacer" }),
       this.range,
-      button(words.addSeries, () => this.pick(), "tool bare", icon("plus")),
-      button(words.csvHintOf, () => this.save(), "tool bare", icon("download")),
+      button(words.addSeries, () => this.openPicker(), "tool bare", icon("plus")),
+      button(words.csvHintOf, () => this.saveCsv(), "tool bare", icon("download")),
       button(words.removePlot, () => state.removePlot(plot), "tool bare", icon("close")),
     );
     const label = { label: words.diagram };
@@ -71,7 +71,7 @@ export class PlotBox {
   }
 
   /** Opens the input for adding a series. */
-  pick(): void {
+  openPicker(): void {
     if (!this.picker) {
       this.picker = new PlotPicker(
         this.state,
@@ -135,7 +135,7 @@ export class PlotBox {
     return high > low ? [Number(low.toPrecision(3)), Number(high.toPrecision(3))] : [low - 1, high + 1];
   }
 
-  private save(): void {
+  private saveCsv(): void {
     const { window: shown, source } = this.state;
     const { series } = this.plot;
     if (!shown) return;

@@ -8,7 +8,7 @@ const COLORS = 8;
 const AXIS_FONT = "10.5px system-ui, sans-serif";
 const Y_AXIS_PX = 58;
 /** Seconds; greater times are calendar times, smaller ones seconds since the start of a simulation. */
-const CALENDAR_FROM = 1e8;
+const MIN_CALENDAR_TIME = 1e8;
 
 /** Returns the colour of a plot's series, as a CSS variable. */
 export function seriesColor(index: number): string {
@@ -39,7 +39,7 @@ export class PlotChart {
     const [width, height] = [this.element.clientWidth, this.element.clientHeight];
     if (width === 0 || height === 0) return;
     if (!this.library) {
-      this.fetch();
+      this.fetchLibrary();
       return;
     }
     if (this.count !== plot.series.length) this.rebuild(this.library, width, height);
@@ -69,7 +69,7 @@ export class PlotChart {
     this.draw();
   }
 
-  private fetch(): void {
+  private fetchLibrary(): void {
     if (this.fetching) return;
     this.fetching = true;
     import("./plot-library").then(
@@ -115,8 +115,8 @@ export class PlotChart {
           { ...axis, size: Y_AXIS_PX, values: (_, values) => values.map((value) => valueText(value)) },
         ],
         hooks: {
-          setCursor: [(chart) => this.read(chart)],
-          setSelect: [(chart) => this.select(chart)],
+          setCursor: [(chart) => this.readCursor(chart)],
+          setSelect: [(chart) => this.zoomToSelection(chart)],
         },
       },
       undefined,
@@ -124,7 +124,7 @@ export class PlotChart {
     );
   }
 
-  private read(chart: uPlot): void {
+  private readCursor(chart: uPlot): void {
     const { left } = chart.cursor;
     if (left === undefined || left < 0) {
       this.atCursor = null;
@@ -138,10 +138,10 @@ export class PlotChart {
     this.cursorMoved();
   }
 
-  private select(chart: uPlot): void {
+  private zoomToSelection(chart: uPlot): void {
     const { left, width } = chart.select;
     if (width < 4) return;
-    this.state.hold(chart.posToVal(left, "x"), chart.posToVal(left + width, "x"));
+    this.state.freezeAt(chart.posToVal(left, "x"), chart.posToVal(left + width, "x"));
     chart.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
   }
 }
@@ -163,7 +163,7 @@ function rangeOf([, ...columns]: ReturnType<typeof plotTable>): [number, number]
 
 /** Returns the label of a time on the axis: the time of day, or seconds if it is not a calendar time. */
 function timeText(time: number): string {
-  if (time < CALENDAR_FROM) return `${Number(time.toFixed(3))} s`;
+  if (time < MIN_CALENDAR_TIME) return `${Number(time.toFixed(3))} s`;
   const whole = new Date(time * 1000);
   const parts = [whole.getHours(), whole.getMinutes(), whole.getSeconds()].map((each) => String(each).padStart(2, "0"));
   const rest = Math.round((time % 1) * 1000) / 1000;

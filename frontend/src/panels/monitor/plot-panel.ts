@@ -64,7 +64,7 @@ export class PlotPanel implements Panel {
 
   private add(): void {
     const plot = this.state.addPlot();
-    this.boxes.get(plot)?.pick();
+    this.boxes.get(plot)?.openPicker();
   }
 
   private show(): void {

@@ -59,7 +59,7 @@ export class TopicLine {
   }
 
   /** Sets the tick box and the expander. */
-  set(measured: boolean, opened: boolean): void {
+  setState(measured: boolean, opened: boolean): void {
     this.box.checked = measured || opened;
     this.expander.setAttribute("aria-expanded", String(opened));
     this.body.hidden = !opened;

@@ -3,7 +3,7 @@ import type { TopicRow } from "../../protocol";
 import type { TopicsState } from "../../state/monitor/topics";
 import { strings } from "../../strings";
 import { textField, tickBox } from "../../widgets/controls";
-import { whenSeen } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/when-seen";
 import type { Panel } from "../panel";
 import { TopicLine } from "./topic-row";
 
@@ -18,7 +18,7 @@ export class TopicsPanel implements Panel {
   private readonly measured = new Set<string>();
   private readonly unfolded = new Set<string>();
   private filter = "";
-  private hidden = false;
+  private showsHidden = false;
 
   constructor(
     private readonly state: TopicsState,
@@ -31,7 +31,7 @@ export class TopicsPanel implements Panel {
       this.show();
     });
     const hidden = tickBox(words.hidden, words.hiddenHint, (ticked) => {
-      this.hidden = ticked;
+      this.showsHidden = ticked;
       this.show();
     });
     const bar = h("div", { class: "toolbar" }, filter, h("span", { class: "spacer" }), hidden);
@@ -57,12 +57,12 @@ export class TopicsPanel implements Panel {
       this.body,
     );
     this.element = h("div", { class: "panel monitor" }, bar, h("div", { class: "scroll" }, table, this.empty));
-    this.element.addEventListener("keydown", (event) => this.keyed(event));
+    this.element.addEventListener("keydown", (event) => this.onKeyDown(event));
     state.listChanged.on(() => this.show());
     state.figuresChanged.on(() => this.showFigures());
-    state.messageCame.on((message) => this.lines.get(message.topic)?.showMessage(message));
-    whenSeen(this.element, (seen) => {
-      state.list(this, seen);
+    state.messageArrived.on((message) => this.lines.get(message.topic)?.showMessage(message));
+    onVisibilityChange(this.element, (seen) => {
+      state.watchList(this, seen);
       state.watch(seen ? this.measured : [], seen ? this.unfolded : []);
     });
   }
@@ -72,7 +72,7 @@ export class TopicsPanel implements Panel {
     const rows = shown.flatMap((topic) => {
       const line = this.line(topic.name);
       line.show(topic);
-      line.set(this.measured.has(topic.name), this.unfolded.has(topic.name));
+      line.setState(this.measured.has(topic.name), this.unfolded.has(topic.name));
       return [line.head, line.body];
     });
     const same = rows.length === this.body.childElementCount && rows.every((row, at) => row === this.body.children[at]);
@@ -82,7 +82,7 @@ export class TopicsPanel implements Panel {
 
   private isShown({ name }: TopicRow): boolean {
     if (!name.toLowerCase().includes(this.filter)) return false;
-    return this.hidden || !name.split("/").some((part) => part.startsWith("_"));
+    return this.showsHidden || !name.split("/").some((part) => part.startsWith("_"));
   }
 
   private line(name: string): TopicLine {
@@ -90,12 +90,12 @@ export class TopicsPanel implements Panel {
     if (known) return known;
     const made = new TopicLine(name, {
       measured: (topic, ticked) => {
-        flip(this.measured, topic, ticked);
+        setMember(this.measured, topic, ticked);
         if (!ticked) this.unfolded.delete(topic);
         this.watch();
       },
       opened: (topic, open) => {
-        flip(this.unfolded, topic, open);
+        setMember(this.unfolded, topic, open);
         this.watch();
       },
       plotted: (topic, path) => this.plot(topic, path),
@@ -115,7 +115,7 @@ export class TopicsPanel implements Panel {
   }
 
   /** Moves to the previous or next topic with the arrow keys. */
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     if (event.key !== "ArrowDown" && event.key !== "ArrowUp") return;
     const stops = [...this.body.querySelectorAll<HTMLElement>(":scope > tr[data-topic] .expander")];
     const at = stops.indexOf(document.activeElement as HTMLElement);
@@ -125,7 +125,7 @@ export class TopicsPanel implements Panel {
   }
 }
 
-function flip(set: Set<string>, member: string, wanted: boolean): void {
+function setMember(set: Set<string>, member: string, wanted: boolean): void {
   if (wanted) set.add(member);
   else set.delete(member);
 }

@@ -15,7 +15,7 @@ export class ArgumentFormCard {
     this.element.hidden = true;
     this.element.addEventListener("submit", (event) => {
       event.preventDefault();
-      this.give();
+      this.submit();
     });
     // Keys of the scene must not act while values are typed.
     this.element.addEventListener("keydown", (event) => event.stopPropagation());
@@ -57,7 +57,7 @@ export class ArgumentFormCard {
   }
 
   /** Sends the values. Empty fields are omitted: the file then uses its default, or reports the missing argument. */
-  private give(): void {
+  private submit(): void {
     const given = [...this.fields].map(([name, { value }]) => [name, value.trim()] as const).filter(([, value]) => value !== "");
     this.connection.send({ type: "give_arguments", values: Object.fromEntries(given) });
   }

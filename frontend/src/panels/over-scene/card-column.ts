@@ -1,7 +1,7 @@
 import { h } from "../../dom";
 
 /** The scene below the cards. */
-export interface Below {
+export interface SceneBelow {
   /** Returns the width covered at the right, pixels. */
   covered: () => number;
   /** The rightmost pixel column that robots cover, from the left edge. */
@@ -15,9 +15,9 @@ export interface Below {
 /** The cards over the right side of the scene, one below the other, which share its height. */
 export class CardColumn {
   readonly element = h("div", { class: "stack" });
-  private below: Below | null = null;
+  private below: SceneBelow | null = null;
 
-  lieOver(below: Below): void {
+  connectScene(below: SceneBelow): void {
     this.below = below;
     below.covered = () => this.covered;
   }

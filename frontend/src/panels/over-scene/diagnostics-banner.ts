@@ -6,12 +6,12 @@ import { strings } from "../../strings";
 import { placeText, shortPath } from "../place";
 
 /** Codes of findings on files of the viewer, which do not prevent the robot from being shown. */
-const NOT_OF_DESCRIPTIONS = /^(RVIZ|VIEW)/;
+const VIEWER_CODES = /^(RVIZ|VIEW)/;
 /**
  * Codes of warnings that the user needs to understand the scene: the robot has fallen out of the world, or all its
  * meshes are missing.
  */
-const TELLING = new Set(["SIM143", "VIEW207"]);
+const EXPLAINING_CODES = new Set(["SIM143", "VIEW207"]);
 
 /**
  * The banner over the scene while the description has an error: its cause, its hint, and whether the robot shown is the
@@ -31,14 +31,14 @@ export class DiagnosticsBanner {
   }
 
   /** Whether a description has an error. */
-  get tellsError(): boolean {
-    return this.session.diagnostics.some(({ severity, code }) => severity === "error" && !NOT_OF_DESCRIPTIONS.test(code));
+  get hasError(): boolean {
+    return this.session.diagnostics.some(({ severity, code }) => severity === "error" && !VIEWER_CODES.test(code));
   }
 
   private update(): void {
     const all = this.session.diagnostics;
     const errors = all.filter((item) => item.severity === "error");
-    const first = errors[0] ?? all.find(({ code, message }) => TELLING.has(code) && !this.closed.has(message));
+    const first = errors[0] ?? all.find(({ code, message }) => EXPLAINING_CODES.has(code) && !this.closed.has(message));
     this.element.hidden = !first;
     if (!first) return;
     const words = strings.diagnostics;
@@ -67,6 +67,6 @@ export class DiagnosticsBanner {
 
   /** Whether the robot shown is an earlier one: a description with an error does not replace it. */
   private keepsRobot(error: DiagnosticItem): boolean {
-    return this.session.robot !== null && !NOT_OF_DESCRIPTIONS.test(error.code);
+    return this.session.robot !== null && !VIEWER_CODES.test(error.code);
   }
 }

@@ -18,8 +18,8 @@ export class FrameNotice {
   readonly element = h("div", { class: "line-notice failed", role: "alert", data: { notice: "frame" } });
   private timer: ReturnType<typeof setTimeout> | undefined;
   /** The missing frame for which the notice was last shown or scheduled. */
-  private told: string | null = null;
-  private robot: TopicChoice | null = null;
+  private missingFrame: string | null = null;
+  private robotTopic: TopicChoice | null = null;
 
   constructor(private readonly session: Session) {
     const { displays, frames, configuration } = session;
@@ -28,8 +28,8 @@ export class FrameNotice {
     for (const signal of [displays.treeChanged, frames.tableChanged]) signal.on(review);
     displays.statusChanged.on(review);
     displays.valueChanged.on(review);
-    configuration.offered.on(({ topics }) => {
-      this.robot = topics.find((each) => each.classes.length > 0 && obviousDisplay(each) === ROBOT_MODEL) ?? null;
+    configuration.choicesArrived.on(({ topics }) => {
+      this.robotTopic = topics.find((each) => each.classes.length > 0 && obviousDisplay(each) === ROBOT_MODEL) ?? null;
       if (!this.element.hidden) this.show();
     });
   }
@@ -41,29 +41,29 @@ export class FrameNotice {
 
   private review(): void {
     const { missing } = this;
-    if (missing === this.told) {
+    if (missing === this.missingFrame) {
       if (!this.element.hidden) this.show();
       return;
     }
     clearTimeout(this.timer);
-    this.told = missing;
+    this.missingFrame = missing;
     this.element.hidden = true;
     if (missing === null) return;
-    this.session.configuration.askChoices();
+    this.session.configuration.requestChoices();
     this.timer = setTimeout(() => this.show(), PATIENCE_MS);
   }
 
   private show(): void {
     const words = strings.scene.frame;
     const root = largestRoot(this.session.frames);
-    if (this.told === null || root === null) return;
+    if (this.missingFrame === null || root === null) return;
     const close = button(strings.diagnostics.close, () => (this.element.hidden = true), "tool bare", icon("close"));
-    const { robot } = this;
-    const adds = robot !== null && !this.session.displays.displays.some(({ cls }) => cls === ROBOT_MODEL);
+    const { robotTopic } = this;
+    const adds = robotTopic !== null && !this.session.displays.displays.some(({ cls }) => cls === ROBOT_MODEL);
     const label = adds ? words.useWithRobot(root) : words.use(root);
-    const use = button(label, () => this.use(root, adds ? robot.topic : null), "tool framed primary", label);
+    const use = button(label, () => this.use(root, adds ? robotTopic.topic : null), "tool framed primary", label);
     this.element.replaceChildren(
-      h("header", {}, h("strong", {}, words.missing(this.told)), close),
+      h("header", {}, h("strong", {}, words.missing(this.missingFrame)), close),
       h("div", {}, words.hint),
       h("div", { class: "notice-choices" }, use),
     );

@@ -1,10 +1,10 @@
 import { button, coalesced, h } from "../../dom";
 import { icon } from "../../icons";
 import type { Inspected } from "../../state/inspect";
-import { general } from "../../state/number-text";
+import { formatGeneral } from "../../state/number-text";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import { closesOutside } from "../../widgets/popover";
+import { closeOutside } from "../../widgets/popover";
 import { currentModel } from "../description/current-model";
 
 const CHOICES = ["centers", "boxes", "ellipsoids", "joints", "contrast", "frames"] as const;
@@ -44,7 +44,7 @@ export class InspectMenu {
 
   private toggle(open: boolean): void {
     this.release();
-    this.release = open ? closesOutside([this.element], (back) => this.closed(back)) : () => undefined;
+    this.release = open ? closeOutside([this.element], (back) => this.closed(back)) : () => undefined;
     this.card.hidden = !open;
     this.open.setAttribute("aria-expanded", String(open));
     this.resized();
@@ -90,7 +90,7 @@ export class InspectMenu {
     const { inspect } = this.session;
     const model = currentModel(this.session);
     for (const [what, box] of this.boxes) box.checked = inspect.current[what];
-    this.open.classList.toggle("on", inspect.any);
+    this.open.classList.toggle("on", inspect.isActive);
     const deepest = model?.deepest ?? 0;
     this.depth.parentElement?.toggleAttribute("hidden", !inspect.current.frames);
     this.depth.max = String(deepest);
@@ -141,7 +141,7 @@ export class InspectMenu {
       return h("li", { data: { link } }, row);
     });
     return [
-      h("div", {}, words.mass(general(mass))),
+      h("div", {}, words.mass(formatGeneral(mass))),
       h("div", {}, links.size > 0 ? words.implausible(links.size) : words.plausible),
       h("ul", {}, ...rows),
     ];

@@ -5,7 +5,7 @@ import type { SlowCause } from "../../state/slowness";
 import { strings } from "../../strings";
 
 /** ms for which the notice that the page is slow is shown. */
-const TOLD_MS = 15_000;
+const NOTICE_MS = 15_000;
 
 /**
  * The notice over the scene while data is thinned: the data and its rate, the slow part, and the remedy. A notice that
@@ -13,29 +13,29 @@ const TOLD_MS = 15_000;
  */
 export class LineNotice {
   readonly element = h("div", { class: "line-notice", role: "status" });
-  private told: "not yet" | "now" | "done" = "not yet";
+  private slowPageNotice: "not yet" | "now" | "done" = "not yet";
 
   constructor(private readonly session: Session) {
     const update = coalesced(() => this.update());
     session.slowLine.changed.on(update);
     session.slowness.changed.on(update);
     session.displays.treeChanged.on(update);
-    session.pace.changed.on(() => {
-      if (session.pace.isSlow) this.tellSlowPage(update);
+    session.drawingPace.changed.on(() => {
+      if (session.drawingPace.isSlow) this.showSlowPage(update);
       update();
     });
     this.update();
   }
 
   private update(): void {
-    const { slowLine, slowness, pace } = this.session;
+    const { slowLine, slowness, drawingPace } = this.session;
     const { reduced } = slowLine;
     const words = strings.sharing;
-    const cause = causeOf(slowness.cause, this.told === "now", reduced.length);
-    this.element.hidden = reduced.length === 0 && this.told !== "now";
+    const cause = causeOf(slowness.cause, this.slowPageNotice === "now", reduced.length);
+    this.element.hidden = reduced.length === 0 && this.slowPageNotice !== "now";
     const lines = reduced.map((each) => h("div", {}, h("b", {}, this.name(each)), ` ${lineText(each)}`));
-    if (this.told === "now" && pace.software !== null) lines.push(h("div", {}, words.software(pace.software)));
-    if (this.told === "now" && this.isLitAutomatically) lines.push(h("div", {}, words.plainLight));
+    if (this.slowPageNotice === "now" && drawingPace.software !== null) lines.push(h("div", {}, words.software(drawingPace.software)));
+    if (this.slowPageNotice === "now" && this.isLitAutomatically) lines.push(h("div", {}, words.plainLight));
     this.element.replaceChildren(h("strong", {}, words.slow[cause]), h("div", {}, words.slowHints[cause]), ...lines);
   }
 
@@ -45,13 +45,13 @@ export class LineNotice {
     return [globalOptions, ...displays.map(({ rows }) => rows)].some((rows) => rows.text("", "Light") === "Automatic");
   }
 
-  private tellSlowPage(update: () => void): void {
-    if (this.told !== "not yet") return;
-    this.told = "now";
+  private showSlowPage(update: () => void): void {
+    if (this.slowPageNotice !== "not yet") return;
+    this.slowPageNotice = "now";
     setTimeout(() => {
-      this.told = "done";
+      this.slowPageNotice = "done";
       update();
-    }, TOLD_MS);
+    }, NOTICE_MS);
   }
 
   private name({ display }: Reduced): string {
@@ -63,8 +63,8 @@ export class LineNotice {
  * Returns the cause to show. The notice about a slow page stays for a while after the page has recovered, unless data
  * is reduced.
  */
-export function causeOf(cause: SlowCause, isTold: boolean, reduced: number): SlowCause {
-  return isTold && reduced === 0 ? "page" : cause;
+export function causeOf(cause: SlowCause, isNoticeShown: boolean, reduced: number): SlowCause {
+  return isNoticeShown && reduced === 0 ? "page" : cause;
 }
 
 function lineText({ reduction, rate }: Reduced): string {

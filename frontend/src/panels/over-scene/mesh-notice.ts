@@ -4,7 +4,7 @@ import type { MeshLoad, MeshProgress } from "../../state/mesh-progress";
 import { strings } from "../../strings";
 
 /** The maximum number of files listed; the others are counted. */
-const MOST_LINES = 4;
+const MAX_LINES = 4;
 
 /** The notice over the scene while mesh files take longer than a moment: the files and their progress. */
 export class MeshNotice {
@@ -19,8 +19,8 @@ export class MeshNotice {
     const words = strings.meshes.progress;
     const { loads } = this.progress;
     this.element.hidden = loads.length === 0;
-    const lines = loads.slice(0, MOST_LINES).map((load) => h("div", {}, h("b", {}, load.name), ` ${progressText(load)}`));
-    const more = loads.length > MOST_LINES ? h("div", {}, words.more(String(loads.length - MOST_LINES))) : "";
+    const lines = loads.slice(0, MAX_LINES).map((load) => h("div", {}, h("b", {}, load.name), ` ${progressText(load)}`));
+    const more = loads.length > MAX_LINES ? h("div", {}, words.more(String(loads.length - MAX_LINES))) : "";
     this.element.replaceChildren(h("strong", {}, words.title), ...lines, more);
   }
 }

@@ -4,7 +4,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 
 /** How long the notice is shown, ms. */
-const TOLD_MS = 15_000;
+const NOTICE_MS = 15_000;
 
 /**
  * The notice over the scene for a while after one node's description replaced another's, with the text of the display's
@@ -12,13 +12,13 @@ const TOLD_MS = 15_000;
  */
 export class OwnerNotice {
   readonly element = h("div", { class: "line-notice", role: "status", data: { notice: "owner" } });
-  private readonly told = new Map<string, string>();
+  private readonly lastTexts = new Map<string, string>();
   private timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly session: Session) {
     this.element.hidden = true;
     session.displays.statusChanged.on((display) => {
-      if (display?.cls.endsWith("/RobotModel") === true) this.look(display);
+      if (display?.cls.endsWith("/RobotModel") === true) this.review(display);
     });
   }
 
@@ -26,15 +26,15 @@ export class OwnerNotice {
    * Shows a warning about a RobotModel's topic. With a robot, such a warning means that several different descriptions
    * are published.
    */
-  private look({ id, name, status }: DisplayState): void {
+  private review({ id, name, status }: DisplayState): void {
     if ((this.session.robots.get(id)?.links.length ?? 0) === 0) return;
     const text = status.find((row) => row.name === "Topic" && row.level === "warn")?.text ?? "";
-    if (text === (this.told.get(id) ?? "")) return;
-    this.told.set(id, text);
+    if (text === (this.lastTexts.get(id) ?? "")) return;
+    this.lastTexts.set(id, text);
     if (text === "") return;
     this.element.replaceChildren(h("strong", {}, strings.displays.otherDescription), h("div", {}, h("b", {}, name), ` ${text}`));
     this.element.hidden = false;
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => (this.element.hidden = true), TOLD_MS);
+    this.timer = setTimeout(() => (this.element.hidden = true), NOTICE_MS);
   }
 }

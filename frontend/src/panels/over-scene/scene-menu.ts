@@ -6,7 +6,7 @@ import { openMenu } from "../../widgets/menu";
 /**
  * Opens context menus of objects in the scene at the requested positions; a choice with submenu entries opens those.
  */
-export function showSceneMenus(box: HTMLElement, asked: Signal<SceneMenu>): void {
+export function bindSceneMenus(box: HTMLElement, asked: Signal<SceneMenu>): void {
   const anchor = h("div", { class: "scene-menu-anchor" });
   box.append(anchor);
   const open = (choices: readonly MenuChoice[]): void => {

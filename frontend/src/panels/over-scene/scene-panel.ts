@@ -6,7 +6,7 @@ import type { Panel } from "../panel";
 import { talkButton } from "../voice/talk-button";
 import { VoiceNotice } from "../voice/voice-notice";
 import { ArgumentFormCard } from "./argument-form";
-import { CardColumn, type Below } from "./card-column";
+import { CardColumn, type SceneBelow } from "./card-column";
 import { ConnectionNotice } from "./connection-notice";
 import { DiagnosticsBanner } from "./diagnostics-banner";
 import { FrameNotice } from "./frame-notice";
@@ -16,7 +16,7 @@ import { LineNotice } from "./line-notice";
 import { MeshNotice } from "./mesh-notice";
 import { OrientationSign } from "./orientation-sign";
 import { OwnerNotice } from "./owner-notice";
-import { showSceneMenus } from "./scene-menu";
+import { bindSceneMenus } from "./scene-menu";
 import { SelectionCard } from "./selection-card";
 import { SimulationBar } from "./simulation-bar";
 import { ToolNotice } from "./tool-notice";
@@ -39,7 +39,7 @@ export class ScenePanel implements Panel {
     const toolbar = new Toolbar(session.tools, fit, showKeys, talkButton(session.voice, "scene-tool small talk"));
     const banner = new DiagnosticsBanner(session, showDiagnostics);
     const notice = new ConnectionNotice(session.connection);
-    const card = new SelectionCard(session, this.column, () => session.editing.wanted.emit());
+    const card = new SelectionCard(session, this.column, () => session.editing.editRequested.emit());
     const inspect = new InspectMenu(session, this.column.changed);
     const sign = new OrientationSign(session);
     const simulation = new SimulationBar(session.simulation, session.modelling, commands);
@@ -61,12 +61,12 @@ export class ScenePanel implements Panel {
       this.container,
       h("div", { class: "overlay" }, this.notices, this.column.element, this.waiting, sign.element),
     );
-    showSceneMenus(this.box, session.sceneMenu);
+    bindSceneMenus(this.box, session.sceneMenu);
     this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);
     const update = (): void => {
       const awaited = session.displays.displays.some(({ cls, enabled }) => enabled && cls.endsWith("/RobotModel"));
       // If a description has an error, the banner explains why no robot appears.
-      this.waiting.hidden = session.robot !== null || !awaited || banner.tellsError;
+      this.waiting.hidden = session.robot !== null || !awaited || banner.hasError;
     };
     session.diagnosticsChanged.on(update);
     session.robotChanged.on(update);
@@ -75,8 +75,8 @@ export class ScenePanel implements Panel {
   }
 
   /** Connects the cards with the scene below them. */
-  lieOver(scene: Below): void {
-    this.column.lieOver(scene);
+  connectScene(scene: SceneBelow): void {
+    this.column.connectScene(scene);
     new ResizeObserver(() => scene.makeRoomAbove(this.notices.offsetHeight > 0 ? this.notices.offsetTop + this.notices.offsetHeight : 0)).observe(this.notices);
   }
 }

@@ -42,16 +42,16 @@ export class SelectionCard {
     const clear = button(words.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
     const edit = this.edit && button(strings.editing.editHint, this.edit, "tool bare edit-link", icon("handles"));
     this.element.replaceChildren(
-      h("header", {}, icon("cube"), h("strong", { title: words.title }, link.name), h("span", { class: "spacer" }), edit, this.folder(), clear),
+      h("header", {}, icon("cube"), h("strong", { title: words.title }, link.name), h("span", { class: "spacer" }), edit, this.foldButton(), clear),
       ...details(link),
-      place(link, (file, line) => this.session.description.placeAsked.emit({ file, line })),
+      place(link, (file, line) => this.session.description.placeRequested.emit({ file, line })),
       ...trail(link),
     );
     if (link.place) this.session.connection.send({ type: "ask_provenance", display: selected.display, link: link.name });
   }
 
   /** Returns the button that folds the card to the link's name, or unfolds it. */
-  private folder(): HTMLButtonElement {
+  private foldButton(): HTMLButtonElement {
     const words = strings.selection;
     const turn = (): void => {
       show(!this.folded);

@@ -28,7 +28,7 @@ export class Toolbar {
   ) {
     tools.listChanged.on(() => this.build());
     tools.currentChanged.on(() => this.mark());
-    this.element.addEventListener("keydown", (event) => this.keyed(event));
+    this.element.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.build();
   }
 
@@ -80,7 +80,7 @@ export class Toolbar {
   }
 
   /** Moves to the next or previous button with the arrow keys, as in any toolbar. */
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
     if (step === 0) return;
     const all = [...this.element.querySelectorAll<HTMLButtonElement>("button:not(:disabled)")];

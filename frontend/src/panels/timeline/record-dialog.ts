@@ -31,11 +31,11 @@ export function chooseTopics(session: Session): void {
     const known = new Set([...list.querySelectorAll("input")].map(({ value }) => value));
     list.append(...topics.topics.filter(({ name }) => !known.has(name)).map((topic) => row(topic, chosen, () => (dialog.ready = chosen.size > 0))));
   };
-  topics.list(dialog, true);
+  topics.watchList(dialog, true);
   const forget = topics.listChanged.on(fill);
   dialog.element.addEventListener("close", () => {
     forget();
-    topics.list(dialog, false);
+    topics.watchList(dialog, false);
   });
   fill();
   dialog.ready = false;

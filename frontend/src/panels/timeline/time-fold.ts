@@ -12,10 +12,10 @@ export class TimeFold {
 
   constructor(time: TimeControlState, strip: TimeStrip) {
     const word = h("span", {});
-    this.element = button(strings.time.fold, () => strip.unfold(!strip.isUnfolded), "tool bare time-fold", icon("clock"), word);
+    this.element = button(strings.time.fold, () => strip.setUnfolded(!strip.isUnfolded), "tool bare time-fold", icon("clock"), word);
     this.element.setAttribute("aria-label", strings.panels.time);
     const show = (): void => {
-      this.element.hidden = !strip.isThere;
+      this.element.hidden = !strip.exists;
       this.element.setAttribute("aria-expanded", String(strip.isUnfolded));
       this.element.classList.toggle("active", time.paused);
       word.textContent = time.paused ? strings.time.paused : "";

@@ -2,7 +2,7 @@ import { button, h } from "../../dom";
 import { icon } from "../../icons";
 import type { SyncMode, TimeControlState, Times } from "../../state/time";
 import { strings } from "../../strings";
-import { whenSeen } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/when-seen";
 import type { Panel } from "../panel";
 
 /**
@@ -11,7 +11,7 @@ import type { Panel } from "../panel";
  */
 const REFRESH_MS = 1000;
 const MODES: readonly SyncMode[] = ["Off", "Exact", "Approximate"];
-const FIGURES: readonly (keyof Times)[] = ["ros", "rosElapsed", "wall", "wallElapsed"];
+const TIME_FIELDS: readonly (keyof Times)[] = ["ros", "rosElapsed", "wall", "wallElapsed"];
 
 /** RViz's Time panel. */
 export class TimePanel implements Panel {
@@ -21,7 +21,7 @@ export class TimePanel implements Panel {
   private readonly pause: HTMLButtonElement;
   private readonly mode = h("select", { class: "choice", title: strings.time.syncHint });
   private readonly source = h("select", { class: "choice", title: strings.time.sourceHint });
-  private readonly figures = FIGURES.map((name) => ({ name, output: h("output", { class: "figure" }) }));
+  private readonly figures = TIME_FIELDS.map((name) => ({ name, output: h("output", { class: "figure" }) }));
 
   private timer = 0;
 
@@ -51,7 +51,7 @@ export class TimePanel implements Panel {
     time.changed.on(() => this.update());
     this.update();
     // Request times only while they are visible.
-    whenSeen(this.element, (seen) => {
+    onVisibilityChange(this.element, (seen) => {
       time.watch(seen);
       clearInterval(this.timer);
       if (seen) this.timer = window.setInterval(() => this.tick(), REFRESH_MS);

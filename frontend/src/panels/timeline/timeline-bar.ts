@@ -7,19 +7,19 @@ import type { Session } from "../../state/session";
 import { SPEEDS, type TimelineState } from "../../state/timeline";
 import { strings } from "../../strings";
 import { RecordButton } from "./record-button";
-import { agoText, clockText, densities, extentText, momentText, passedText } from "./timeline-text";
+import { agoText, clockText, densities, extentText, momentText, elapsedText } from "./timeline-text";
 
 /** From this share of its memory limit on, the history counts as full. */
-const FULL = 0.9;
+const FULL_SHARE = 0.9;
 
 /** Returns the tooltip on the history, and how to extend it if its memory is full. */
 function extentTip(extent: HistoryExtent): string {
   const text = strings.timeline.kept(extentText(extent), (extent.most / 1e6).toFixed(0));
-  return extent.size < FULL * extent.most ? text : `${text}\n${strings.timeline.more}`;
+  return extent.size < FULL_SHARE * extent.most ? text : `${text}\n${strings.timeline.more}`;
 }
 
 /** The share of the timeline by which Page Up and Page Down move. */
-const PAGE = 0.1;
+const PAGE_SHARE = 0.1;
 
 /**
  * The bar in the foot of the page while a recording or the history is shown: play, step, speed, loop, and a track to
@@ -36,7 +36,7 @@ export class TimelineBar {
   private readonly time = h("output", { class: "timeline-time" });
   private readonly marks = h("canvas", { class: "timeline-marks" });
   private readonly head = h("div", { class: "timeline-head" });
-  private readonly part = h("div", { class: "timeline-part" });
+  private readonly markedPart = h("div", { class: "timeline-part" });
   /** Where the user started to mark a part, s since the epoch; null while no part is being marked. */
   private markFrom: number | null = null;
   private readonly track: HTMLElement;
@@ -62,14 +62,14 @@ export class TimelineBar {
     this.speed.append(...SPEEDS.map((speed) => new Option(`${speed}×`, String(speed))));
     this.speed.addEventListener("change", () => timeline.setSpeed(Number(this.speed.value)));
     this.steps.addEventListener("change", () => (timeline.stepTopic = this.steps.value));
-    this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: words.position } }, this.marks, this.part, this.head);
+    this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: words.position } }, this.marks, this.markedPart, this.head);
     this.track.addEventListener("pointerdown", (event) => this.drag(event));
     this.track.addEventListener("pointermove", (event) => {
       if (!this.track.hasPointerCapture(event.pointerId)) return;
       if (this.markFrom === null) this.goTo(event);
       else timeline.setMark({ start: this.markFrom, end: this.timeAt(event) });
     });
-    this.track.addEventListener("keydown", (event) => this.key(event));
+    this.track.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.element = h(
       "section",
       { class: "timeline-bar", aria: { label: words.label } },
@@ -86,11 +86,11 @@ export class TimelineBar {
       this.live,
     );
     timeline.changed.on(() => this.show());
-    session.recording.changed.on(() => this.showAtAll());
-    timeline.moved.on(coalesced(() => this.move()));
+    session.recording.changed.on(() => this.updateVisibility());
+    timeline.moved.on(coalesced(() => this.showPosition()));
     new ResizeObserver(() => this.drawMarks()).observe(this.track);
-    this.takeKeys();
-    this.takeKeysOfScene();
+    this.bindKeys();
+    this.bindSceneKeys();
     this.show();
   }
 
@@ -98,7 +98,7 @@ export class TimelineBar {
     const { timeline, playing, speed, loop, problem } = this.timeline;
     const words = strings.timeline;
     const minutes = timeline?.live ?? false;
-    this.showAtAll();
+    this.updateVisibility();
     this.element.classList.toggle("minutes", minutes);
     this.live.hidden = !minutes;
     this.live.setAttribute("aria-pressed", String(this.timeline.live));
@@ -118,7 +118,7 @@ export class TimelineBar {
     this.problem.textContent = problem;
     this.problem.title = problem;
     this.drawMarks();
-    this.move();
+    this.showPosition();
   }
 
   /** Offers the topics to step by: those of the recording, or for live data those that are displayed. */
@@ -130,20 +130,20 @@ export class TimelineBar {
     this.steps.value = this.timeline.stepTopic;
   }
 
-  private showAtAll(): void {
+  private updateVisibility(): void {
     const without = this.timeline.timeline === null;
     this.element.hidden = without && !this.recording.possible;
     this.element.classList.toggle("recorder-only", without);
   }
 
-  private move(): void {
+  private showPosition(): void {
     const { timeline, position, live, extent } = this.timeline;
     if (!timeline) return;
     const { start, end } = timeline;
     const part = end > start ? Math.min(1, Math.max(0, (position - start) / (end - start))) : 1;
     this.head.style.left = `${(part * 100).toFixed(3)}%`;
     // The age cannot identify the displayed moment, because it keeps growing while time is paused.
-    const passed = extent ? (live ? extentText(extent) : momentText(position)) : passedText(position - start, end - start);
+    const passed = extent ? (live ? extentText(extent) : momentText(position)) : elapsedText(position - start, end - start);
     this.time.textContent = passed;
     this.time.title = extent ? `${clockText(position)}${live ? "" : ` ${agoText(end - position)}`}\n${extentTip(extent)}` : clockText(position);
     this.showMark(start, end);
@@ -174,16 +174,16 @@ export class TimelineBar {
 
   private showMark(start: number, end: number): void {
     const { mark } = this.timeline;
-    this.part.hidden = mark === null;
+    this.markedPart.hidden = mark === null;
     if (!mark || end <= start) return;
-    this.part.style.left = `${((100 * (mark.start - start)) / (end - start)).toFixed(3)}%`;
-    this.part.style.width = `${((100 * (mark.end - mark.start)) / (end - start)).toFixed(3)}%`;
+    this.markedPart.style.left = `${((100 * (mark.start - start)) / (end - start)).toFixed(3)}%`;
+    this.markedPart.style.width = `${((100 * (mark.end - mark.start)) / (end - start)).toFixed(3)}%`;
   }
 
-  private key(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const { timeline, position } = this.timeline;
     if (!timeline || event.ctrlKey || event.metaKey || event.altKey) return;
-    const page = PAGE * (timeline.end - timeline.start);
+    const page = PAGE_SHARE * (timeline.end - timeline.start);
     const places: Record<string, number> = {
       Home: timeline.start,
       End: timeline.end,
@@ -197,7 +197,7 @@ export class TimelineBar {
   }
 
   /** Binds Space to play and pause, and the arrow keys to stepping, where nothing else uses them. */
-  private takeKeys(): void {
+  private bindKeys(): void {
     document.addEventListener("keydown", (event) => {
       const { target } = event;
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || !this.timeline.timeline) return;
@@ -213,7 +213,7 @@ export class TimelineBar {
   }
 
   /** Binds the arrow keys to stepping after a press into the scene of a past time; after Tab they rotate the camera. */
-  private takeKeysOfScene(): void {
+  private bindSceneKeys(): void {
     document.addEventListener("pointerdown", () => (this.pressed = true), true);
     document.addEventListener(
       "keydown",

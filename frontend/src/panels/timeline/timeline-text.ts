@@ -1,15 +1,15 @@
 import type { HistoryExtent, TimelineTopic } from "../../protocol";
 
 /** The maximum number of topics with a row in the timeline. */
-const MOST_ROWS = 12;
-const FAINTEST = 0.12;
+const MAX_ROWS = 12;
+const MIN_DENSITY = 0.12;
 
 /** Seconds since the epoch (1973); smaller times are those of a simulation. */
-const EARLIEST_DATE = 1e8;
+const MIN_CALENDAR_TIME = 1e8;
 
 /** Returns `0:07.250 / 1:30`: the elapsed time of the whole. */
-export function passedText(passed: number, whole: number): string {
-  return `${minutes(passed, 3)} / ${minutes(whole, whole < 10 ? 3 : 0)}`;
+export function elapsedText(passed: number, whole: number): string {
+  return `${minutesText(passed, 3)} / ${minutesText(whole, whole < 10 ? 3 : 0)}`;
 }
 
 /** Returns `1:30 · 45 MB`: the length and the size of the history. */
@@ -29,7 +29,7 @@ export function amountOf(bytes: number, whole: number): string {
 
 /** Returns `1:30` for seconds. */
 export function lengthText(seconds: number): string {
-  return minutes(seconds, 0);
+  return minutesText(seconds, 0);
 }
 
 /** Returns `7.3 s` below a minute, else `1:30`. */
@@ -45,7 +45,7 @@ export function sizeText(bytes: number): string {
 
 /** Returns `−0:07.250`: how long ago the displayed moment was. */
 export function agoText(ago: number): string {
-  return `−${minutes(ago, 3)}`;
+  return `−${minutesText(ago, 3)}`;
 }
 
 /** Returns the local date and time of day with milliseconds, and the seconds since the epoch. */
@@ -56,7 +56,7 @@ export function clockText(seconds: number): string {
 
 /** Returns `14:03:07.250`, the local time of day, or `0:52.304` for simulated time, which starts at zero. */
 export function momentText(seconds: number): string {
-  if (seconds < EARLIEST_DATE) return minutes(seconds, 3);
+  if (seconds < MIN_CALENDAR_TIME) return minutesText(seconds, 3);
   const date = new Date(Math.round(seconds * 1000));
   const parts = [date.getHours(), date.getMinutes(), date.getSeconds()];
   const clock = parts.map((part) => String(part).padStart(2, "0")).join(":");
@@ -69,13 +69,13 @@ export function momentText(seconds: number): string {
  */
 export function densities(topics: readonly TimelineTopic[]): number[][] {
   const known = topics.filter(({ counts }) => counts.length > 0).sort((a, b) => b.count - a.count);
-  return known.slice(0, MOST_ROWS).map(({ counts }) => {
+  return known.slice(0, MAX_ROWS).map(({ counts }) => {
     const most = Math.max(...counts);
-    return counts.map((count) => (count === 0 ? 0 : FAINTEST + (1 - FAINTEST) * (count / most)) * 0.6);
+    return counts.map((count) => (count === 0 ? 0 : MIN_DENSITY + (1 - MIN_DENSITY) * (count / most)) * 0.6);
   });
 }
 
-function minutes(seconds: number, digits: number): string {
+function minutesText(seconds: number, digits: number): string {
   const shown = Number(Math.max(0, seconds).toFixed(digits));
   const hours = Math.floor(shown / 3600);
   const rest = Math.floor((shown % 3600) / 60);

@@ -5,11 +5,11 @@ import { strings } from "../../strings";
 
 /** Whether the robot proposes to enrol words at the user's place, and the user has not started yet. */
 export function proposesEnrolling(voice: VoiceState, words: WordsState): boolean {
-  return voice.told?.proposes_enrolling === true && words.here === null;
+  return voice.serverState?.proposes_enrolling === true && words.takesHere === null;
 }
 
 /** Returns a button that starts enrolment at the user's place. */
 export function enrolHereButton(words: WordsState): HTMLButtonElement {
   const { enrolHere, enrolHereHint } = strings.voice.words;
-  return button(enrolHereHint, () => words.enrolWanted.emit(), "tool framed primary", enrolHere);
+  return button(enrolHereHint, () => words.enrolRequested.emit(), "tool framed primary", enrolHere);
 }

@@ -3,7 +3,7 @@ import { meterPart } from "../../state/voice/level";
 import { strings } from "../../strings";
 
 /** Sound clips at this peak and above. */
-const LOUD = 0.97;
+const CLIPPING_PEAK = 0.97;
 
 /** A meter of the microphone's level. */
 export class LevelMeter {
@@ -19,7 +19,7 @@ export class LevelMeter {
   show(peak: number | null): void {
     const part = meterPart(peak ?? 0);
     this.bar.style.width = `${Math.round(100 * part)}%`;
-    this.bar.classList.toggle("clipped", (peak ?? 0) >= LOUD);
+    this.bar.classList.toggle("clipped", (peak ?? 0) >= CLIPPING_PEAK);
     this.element.setAttribute("aria-valuenow", String(Math.round(100 * part)));
     this.element.setAttribute("aria-valuetext", peak === null ? strings.voice.levelOff : `${Math.round(100 * part)} %`);
   }

@@ -43,7 +43,7 @@ export function talkButton(voice: VoiceState, className: string, ...words: reado
 }
 
 /** Binds the talk key wherever no text is typed, and closes the microphone when the user leaves the page. */
-export function takeTalkKey(voice: VoiceState, takesLetters: string): void {
+export function bindTalkKey(voice: VoiceState, takesLetters: string): void {
   document.addEventListener("keydown", (event) => {
     if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || event.shiftKey) return;
     if (event.key.toLowerCase() !== TALK_KEY) return;
@@ -55,8 +55,8 @@ export function takeTalkKey(voice: VoiceState, takesLetters: string): void {
     if (event.key.toLowerCase() === TALK_KEY) voice.release();
   });
   window.addEventListener("blur", () => voice.release());
-  window.addEventListener("pagehide", () => voice.letGo());
+  window.addEventListener("pagehide", () => voice.releaseMicrophone());
   document.addEventListener("visibilitychange", () => {
-    if (document.hidden) voice.letGo();
+    if (document.hidden) voice.releaseMicrophone();
   });
 }

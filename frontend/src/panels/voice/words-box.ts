@@ -22,7 +22,7 @@ export class WordsBox {
   private readonly here: HTMLElement;
   private readonly hereNote = h("span", { class: "note" });
   private readonly hereDone = h("strong", { role: "status" });
-  private shown = "";
+  private shownNames = "";
   /** Whether the next word to speak takes the focus once the words are known. */
   private focusDue = false;
 
@@ -32,7 +32,7 @@ export class WordsBox {
   ) {
     const texts = strings.voice.words;
     const add = (): void => {
-      words.name(field.value);
+      words.addWord(field.value);
       field.value = "";
     };
     const field = (this.field = textField(texts.choose, () => undefined));
@@ -67,7 +67,7 @@ export class WordsBox {
         "div",
         { class: "voice-row" },
         button(texts.importHint, () => picker.click(), "tool framed", icon("upload"), texts.importFile),
-        button(texts.exportHint, () => words.askFile(), "tool framed", icon("download"), texts.exportFile),
+        button(texts.exportHint, () => words.requestFile(), "tool framed", icon("download"), texts.exportFile),
         picker,
       ),
       this.file,
@@ -75,7 +75,7 @@ export class WordsBox {
     this.element.addEventListener("toggle", () => this.watch(true));
     words.changed.on(() => this.show());
     voice.changed.on(() => this.showProblem());
-    words.fileCame.on((text) => saveText("words.json", text, "application/json"));
+    words.fileArrived.on((text) => saveText("words.json", text, "application/json"));
     this.show();
   }
 
@@ -97,8 +97,8 @@ export class WordsBox {
     const all = words.all;
     const key = JSON.stringify(all.map(({ name }) => name));
     // Replace the rows only if words changed: a button that is held must stay in place.
-    if (key !== this.shown) {
-      this.shown = key;
+    if (key !== this.shownNames) {
+      this.shownNames = key;
       this.list.replaceChildren(...all.map((word) => this.row(word)));
     }
     all.forEach((word, index) => this.update(this.list.children[index], word));
@@ -114,10 +114,10 @@ export class WordsBox {
   }
 
   private showHere(): void {
-    const { all, here, missingHere, enough, file } = this.words;
+    const { all, takesHere, missingHere, enough, file } = this.words;
     const texts = strings.voice.words;
-    this.here.hidden = here === null;
-    if (here === null) return;
+    this.here.hidden = takesHere === null;
+    if (takesHere === null) return;
     const [next] = missingHere;
     const said = all.length - missingHere.length;
     const progress = all.length === 0 ? texts.hereNone : next ? texts.hereDone(said, all.length) : texts.hereAll;
@@ -133,9 +133,9 @@ export class WordsBox {
     const texts = strings.voice.words;
     const { words } = this;
     const say = button(texts.say(name), () => undefined, "tool framed word-say", icon("microphone"));
-    const begin = (): void => void words.begin(name);
+    const begin = (): void => void words.startTake(name);
     const end = (): void => {
-      if (words.recording === name) words.end();
+      if (words.recording === name) words.endTake();
     };
     say.addEventListener("pointerdown", (event) => {
       if (event.button !== 0) return;
@@ -158,11 +158,11 @@ export class WordsBox {
   }
 
   private update(row: Element | undefined, { name, takes }: EnrolledWord): void {
-    const { recording, isHearing, enough, judged, here } = this.words;
+    const { recording, isHearing, enough, judged, takesHere } = this.words;
     const texts = strings.voice.words;
     const find = (part: string): Element | null => row?.querySelector(part) ?? null;
     const count = find(".word-takes");
-    const counted = here === null ? takes : Math.min(here.get(name) ?? 0, enough);
+    const counted = takesHere === null ? takes : Math.min(takesHere.get(name) ?? 0, enough);
     if (count) count.textContent = texts.takes(counted, enough);
     row?.classList.toggle("enough", counted >= enough);
     find(".word-say")?.classList.toggle("talking", recording === name && isHearing);

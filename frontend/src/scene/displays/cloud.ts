@@ -4,18 +4,18 @@ import { nearestPoint } from "../objects/nearest-point";
 import { PointBatch } from "../objects/point-batch";
 import type { PointLook, PointStyle } from "../objects/point-material";
 import { WireBoxes } from "../objects/wire-boxes";
-import type { Described, Hit, SelectionBox } from "../picking";
+import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import { dataPose } from "../pose";
-import { described } from "./cloud-description";
+import { describePoint } from "./cloud-description";
 import type { Drawing, DrawingContext } from "./drawing";
 import { PointFieldStore } from "./point-fields";
 
 /** The radius around the pointer that picks points, as a share of half the scene's height: about 4 pixels. */
-const POINTER = 0.012;
+const POINTER_RADIUS = 0.012;
 /** The maximum number of points that a rectangle selects. */
-const MOST_SELECTED = 1000;
+const MAX_SELECTED = 1000;
 /** The side of the mark around a selected point of the style Points, m. */
-const SMALLEST_MARK = 0.004;
+const POINT_MARK = 0.004;
 
 /** The points of one message. */
 interface Cloud {
@@ -92,7 +92,7 @@ export class CloudDrawing implements Drawing {
     // Half the height of the visible area, m: at a distance of one metre, or at any distance for an orthographic
     // camera.
     const { elements } = this.context.camera().projectionMatrix;
-    const pointer = POINTER / elements[5];
+    const pointer = POINTER_RADIUS / elements[5];
     const parallel = elements[15] === 1;
     let best: Hit | null = null;
     for (const [key, cloud] of this.clouds) {
@@ -116,7 +116,7 @@ export class CloudDrawing implements Drawing {
     if (!this.context.display.rows.bool(true, "Selectable")) return found;
     const at = new Vector3();
     for (const [key, { batch }] of this.clouds) {
-      for (let i = 0; i < batch.count && found.length < MOST_SELECTED; i++) {
+      for (let i = 0; i < batch.count && found.length < MAX_SELECTED; i++) {
         at.fromArray(batch.positions, i * 3).applyMatrix4(batch.root.matrix);
         if (box.hasPoint(at.x, at.y, at.z)) found.push(`${key}:${i}`);
       }
@@ -124,14 +124,14 @@ export class CloudDrawing implements Drawing {
     return found;
   }
 
-  describe(key: string): Described | null {
+  describe(key: string): DescriptionRow | null {
     const found = this.find(key);
     if (!found) return null;
     const { cloud, cloudKey, index } = found;
     const position = cloud.batch.positions.subarray(index * 3, index * 3 + 3);
     // The server numbers the points of the full cloud, also when the cloud is thinned for a slow connection.
     const number = index * cloud.step;
-    return described(number, cloudKey, position, this.fields.of(cloudKey, number));
+    return describePoint(number, cloudKey, position, this.fields.of(cloudKey, number));
   }
 
   placeOf(key: string): Vector3 | null {
@@ -191,22 +191,22 @@ export class CloudDrawing implements Drawing {
   private mark(): void {
     const middles = [...this.selected].flatMap((key) => this.placeOf(key)?.toArray() ?? []);
     const { style, size } = this.look({ perDepth: 0 });
-    this.marks.set(middles, style === "Points" ? SMALLEST_MARK : size[0]);
+    this.marks.set(middles, style === "Points" ? POINT_MARK : size[0]);
     this.context.invalidate();
   }
 }
 
 /** Returns the minimum and maximum corner of all points in the fixed frame, m; null if there are none. */
 function bounds(clouds: readonly Cloud[]): [number[], number[]] | null {
-  const least = new Vector3(Infinity, Infinity, Infinity);
-  const largest = least.clone().negate();
+  const minimum = new Vector3(Infinity, Infinity, Infinity);
+  const maximum = minimum.clone().negate();
   const at = new Vector3();
   for (const { batch } of clouds) {
     for (let i = 0; i < batch.count; i++) {
       at.fromArray(batch.positions, i * 3).applyMatrix4(batch.root.matrix);
-      least.min(at);
-      largest.max(at);
+      minimum.min(at);
+      maximum.max(at);
     }
   }
-  return least.x === Infinity ? null : [least.toArray(), largest.toArray()];
+  return minimum.x === Infinity ? null : [minimum.toArray(), maximum.toArray()];
 }

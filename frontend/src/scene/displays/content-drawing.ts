@@ -59,7 +59,7 @@ export abstract class ContentDrawing<K extends Kind> implements Drawing {
     const box = new Box3();
     this.expandBox(box);
     const bounds = box.isEmpty() ? null : { min: box.min.toArray(), max: box.max.toArray() };
-    return { contents: this.contents.size, bounds, ...this.told() };
+    return { contents: this.contents.size, bounds, ...this.drawnState() };
   }
 
   abstract dispose(): void;
@@ -67,7 +67,7 @@ export abstract class ContentDrawing<K extends Kind> implements Drawing {
   protected abstract expandBox(box: Box3): void;
 
   /** Returns further results for `inspect`. */
-  protected told(): object {
+  protected drawnState(): object {
     return {};
   }
 

@@ -4,17 +4,17 @@ import type { DrawingContext } from "./drawing";
 import { ImageDrawing } from "./image";
 
 /** CSS pixels: lines and texts have the same size whatever the size of the image and the panel. */
-const LINE = 2;
-const TEXT = 16;
-const MOST_KEPT = 10;
+const LINE_PX = 2;
+const TEXT_PX = 16;
+const MAX_PENDING = 10;
 
 /** linkwright/Detections: an image with boxes over it. */
 export class DetectionImageDrawing extends ImageDrawing {
   private readonly overlay = document.createElement("canvas");
   /** The boxes of images that are shown or not painted yet, by their stamps. */
-  private readonly found = new Map<number, ImageBoxes>();
+  private readonly boxesByStamp = new Map<number, ImageBoxes>();
   /** The boxes of an image that is no longer available. */
-  private loose: ImageBoxes | null = null;
+  private unmatchedBoxes: ImageBoxes | null = null;
   private shown: string[] = [];
 
   constructor(context: DrawingContext) {
@@ -32,16 +32,16 @@ export class DetectionImageDrawing extends ImageDrawing {
   override dataChanged(data: DisplayData): void {
     const { content, stamp } = data;
     if (content.kind === "image_boxes") {
-      this.loose = content.of_image ? null : content;
-      if (content.of_image) this.found.set(stamp, content);
-      for (const old of [...this.found.keys()].slice(0, -MOST_KEPT)) this.found.delete(old);
-      if (this.loose) this.draw();
+      this.unmatchedBoxes = content.of_image ? null : content;
+      if (content.of_image) this.boxesByStamp.set(stamp, content);
+      for (const old of [...this.boxesByStamp.keys()].slice(0, -MAX_PENDING)) this.boxesByStamp.delete(old);
+      if (this.unmatchedBoxes) this.draw();
     } else super.dataChanged(data);
   }
 
   override dataForgotten(key: string | null): void {
-    this.found.clear();
-    this.loose = null;
+    this.boxesByStamp.clear();
+    this.unmatchedBoxes = null;
     if (key === "boxes") this.draw();
     else super.dataForgotten(key);
   }
@@ -51,13 +51,13 @@ export class DetectionImageDrawing extends ImageDrawing {
   }
 
   /** Called when a new image is on the canvas. */
-  protected override painted(): void {
+  protected override onPainted(): void {
     this.draw();
   }
 
   private draw(): void {
     const { overlay } = this;
-    const boxes = this.found.get(this.imageStamp) ?? this.loose;
+    const boxes = this.boxesByStamp.get(this.imageStamp) ?? this.unmatchedBoxes;
     const { width, height } = this.size;
     const context = overlay.getContext("2d");
     if (!context || width === 0) return;
@@ -93,10 +93,10 @@ function drawBox(context: CanvasRenderingContext2D, { boxes, colors }: ImageBoxe
   context.translate(x, y);
   context.rotate(turn);
   context.strokeStyle = color;
-  context.lineWidth = LINE / scale;
+  context.lineWidth = LINE_PX / scale;
   context.strokeRect(-width / 2, -height / 2, width, height);
   if (text !== "") {
-    const line = TEXT / scale;
+    const line = TEXT_PX / scale;
     context.font = `${0.75 * line}px sans-serif`;
     const top = y - height / 2 < line ? -height / 2 : -height / 2 - line;
     context.fillStyle = color;

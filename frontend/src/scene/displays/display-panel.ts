@@ -8,7 +8,7 @@ export interface DisplayPanel {
   readonly icon: IconName;
   readonly element: HTMLElement;
   /** Whether the panel replaces the scene, because a recording with images only has nothing to show in it. */
-  readonly instead: boolean;
+  readonly replacesScene: boolean;
   /** Called when the user closes the panel. */
   closed(): void;
 }

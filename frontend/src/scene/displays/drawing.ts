@@ -5,7 +5,7 @@ import type { Session } from "../../state/session";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import type { MovingView } from "../robot/moving-meshes";
 import type { PanelHost } from "./display-panel";
-import type { Described, Hit, Interaction, ScenePointer, SelectionBox } from "../picking";
+import type { DescriptionRow, Hit, Interaction, ScenePointer, SelectionBox } from "../picking";
 
 /** The objects that a drawing uses. */
 export interface DrawingContext {
@@ -16,8 +16,8 @@ export interface DrawingContext {
   readonly panels: PanelHost;
   /** Requests a frame. */
   readonly invalidate: () => void;
-  /** Shows something outside the scene in step with the next frame, see `FrameLoop.beside`. */
-  readonly beside: (show: () => void) => void;
+  /** Shows something outside the scene in step with the next frame, see `FrameLoop.schedule`. */
+  readonly showWithFrame: (show: () => void) => void;
   /** Returns the current camera of the 3-D view. */
   readonly camera: () => Camera;
   /** Whether a light with shadows would not make the page slow. */
@@ -31,7 +31,7 @@ export interface DrawnScene {
   /** The background colour of the scene. */
   readonly background: string;
   /** Runs `draw` while only the accepted displays are visible. */
-  showing(accepts: (display: DisplayState) => boolean, draw: () => void): void;
+  withOnly(accepts: (display: DisplayState) => boolean, draw: () => void): void;
 }
 
 /** The drawing of a display. The stage shows `root` while the display is enabled. */
@@ -49,13 +49,13 @@ export interface Drawing {
    * Called before a coarse frame of a moving scene, to omit what is not noticed; with null after the motion, to draw
    * everything again.
    */
-  move?(view: MovingView | null): void;
+  simplify?(view: MovingView | null): void;
   /** Called with new content; a drawing created later receives earlier content, too. */
   dataChanged?(data: DisplayData): void;
   /** Called when the content under a key, or all content (null), must no longer be drawn. */
   dataForgotten?(key: string | null): void;
   /** Called after every frame while the display is enabled, for displays that show the scene elsewhere. */
-  drawn?(scene: DrawnScene): void;
+  afterFrame?(scene: DrawnScene): void;
   /** Returns false while requested data is still loading. */
   settled?(): boolean;
   /** Returns the nearest object that a ray hits. */
@@ -63,7 +63,7 @@ export interface Drawing {
   /** Returns the keys of the objects within a rectangle on the screen. */
   pickBox?(box: SelectionBox): readonly string[];
   /** Returns what the Selection panel shows of an object now; null if the object no longer exists. */
-  describe?(key: string): Described | null;
+  describe?(key: string): DescriptionRow | null;
   /** Returns the three.js objects that draw an object, for outlining and focusing. */
   objectsOf?(key: string): readonly Object3D[];
   /** Returns the position of an object in the fixed frame, for objects without three.js objects of their own. */

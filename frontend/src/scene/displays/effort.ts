@@ -6,7 +6,7 @@ import type { DrawingContext } from "./drawing";
 import { poseAt } from "./styles";
 
 /** The radius of a ring without effort, m, which is also added to the used share of the limit. */
-const LEAST = 0.05;
+const MIN_RADIUS = 0.05;
 /** The points of a ring, which spans this many of 32 parts; the gap holds its arrow head. */
 const POINTS = 30;
 const PARTS = 32;
@@ -26,7 +26,7 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
     this.heads.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { rings: this.heads.size, joints: this.latest?.joints ?? [], efforts: [...(this.latest?.efforts ?? [])] };
   }
 
@@ -48,8 +48,8 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
       content.joints.forEach((joint, i) => {
         if (!rows.bool(true, "Joints", joint)) return;
         const effort = content.efforts[i] ?? 0;
-        const part = usedPart(effort, content.limits[i] ?? 0) + LEAST;
-        const radius = LEAST + (part * scale) / 2;
+        const part = usedShare(effort, content.limits[i] ?? 0) + MIN_RADIUS;
+        const radius = MIN_RADIUS + (part * scale) / 2;
         const [r, g, b] = rainbow(part);
         poseAt(content.poses, i, pose);
         strips.push(ring(pose, radius, Math.sign(effort)));
@@ -66,7 +66,7 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
 }
 
 /** Returns the used share of an effort's limit, at most 1; for a joint without a limit, the effort itself. */
-function usedPart(effort: number, limit: number): number {
+function usedShare(effort: number, limit: number): number {
   return limit === 0 ? Math.abs(effort) : Math.min(Math.abs(effort) / limit, 1);
 }
 

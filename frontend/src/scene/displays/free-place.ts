@@ -1,12 +1,12 @@
 import { Box3, Vector3, type Matrix4 } from "three";
 
 /** Half the side of the free space, and the distance between the places that are tried, m. */
-const HALF = 0.5;
+const HALF_SIDE = 0.5;
 const STEP = 1;
 /** Objects up to this height count as floor, m. */
-const FLOOR = 0.05;
+const FLOOR_HEIGHT = 0.05;
 /** The maximum number of steps in each direction. */
-const MOST = 20;
+const MAX_STEPS = 20;
 const SIDES = [[1, 0], [0, 1], [-1, 0], [0, -1]] as const;
 
 /**
@@ -22,11 +22,11 @@ export function freePlace(boxes: readonly Box3[], world: Matrix4, near: Vector3 
   const { x: atX, y: atY } = near === null ? new Vector3() : near.clone().applyMatrix4(toWorld).round();
   const isFree = (place: readonly number[]): boolean => {
     const [x, y, z] = new Vector3().fromArray(place).applyMatrix4(world).toArray();
-    const room = new Box3(new Vector3(x - HALF, y - HALF, z + FLOOR), new Vector3(x + HALF, y + HALF, z + 2 * HALF));
+    const room = new Box3(new Vector3(x - HALF_SIDE, y - HALF_SIDE, z + FLOOR_HEIGHT), new Vector3(x + HALF_SIDE, y + HALF_SIDE, z + 2 * HALF_SIDE));
     return !boxes.some((box) => box.intersectsBox(room));
   };
   const places = [[atX, atY, 0]];
-  for (let step = 1; step <= MOST; step++) for (const [x, y] of SIDES) places.push([atX + x * step * STEP, atY + y * step * STEP, 0]);
+  for (let step = 1; step <= MAX_STEPS; step++) for (const [x, y] of SIDES) places.push([atX + x * step * STEP, atY + y * step * STEP, 0]);
   const all = boxes.reduce((sum, box) => sum.union(box), new Box3()).applyMatrix4(toWorld);
-  return places.find(isFree) ?? [Math.ceil(all.max.x + HALF), 0, 0];
+  return places.find(isFree) ?? [Math.ceil(all.max.x + HALF_SIDE), 0, 0];
 }

@@ -3,10 +3,10 @@ import { FIXED_FRAME } from "../../state/view";
 import { WideLines } from "../objects/wide-lines";
 import { framePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
-import { gridLines, inPieces, shadesOf } from "./grid-lines";
+import { gridLines, splitLines, fadedColors } from "./grid-lines";
 
 /** The maximum number of pieces of a line; up to it, a line has one piece for each cell. */
-const MOST_PIECES = 20;
+const MAX_PIECES = 20;
 
 /** rviz_default_plugins/Grid */
 export class GridDrawing implements Drawing {
@@ -40,11 +40,11 @@ export class GridDrawing implements Drawing {
     this.billboards.root.position.set(...offset);
     this.billboards.setSegments(wide ? segments : new Float32Array(0));
     this.billboards.setStyle(color, alpha, rows.number(0.03, "Line Style", "Line Width"));
-    const pieces = wide ? new Float32Array(0) : inPieces(segments, Math.max(1, Math.min(cells, MOST_PIECES)));
+    const pieces = wide ? new Float32Array(0) : splitLines(segments, Math.max(1, Math.min(cells, MAX_PIECES)));
     this.lines.geometry.dispose();
     this.lines.geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(pieces, 3));
     this.fades = this.context.session.displays.hasBackdrop;
-    const shades = this.fades ? shadesOf(pieces) : null;
+    const shades = this.fades ? fadedColors(pieces) : null;
     if (shades) this.lines.geometry.setAttribute("color", new Float32BufferAttribute(shades, 4));
     this.lines.material.vertexColors = shades !== null;
     this.lines.material.color.set(color);

@@ -16,35 +16,35 @@ export class ImageDrawing implements Drawing {
   protected imageStamp = 0;
   private frame: ImageFrame | null = null;
   private readonly resizing = new ResizeObserver(() => {
-    this.tellSize();
-    this.painted();
+    this.sendSize();
+    this.onPainted();
   });
   private readonly stopListening: (() => void)[];
   private state: "none" | "shown" | "unreadable" = "none";
 
   constructor(protected readonly context: DrawingContext) {
-    this.image = new ImageCanvas(context.beside);
+    this.image = new ImageCanvas(context.showWithFrame);
     this.panel = new OwnPanel(context, "image", this.image.canvas);
-    this.explain();
-    this.panel.match();
+    this.showState();
+    this.panel.update();
     this.resizing.observe(this.panel.element);
     const { connection, displays } = context.session;
-    this.stopListening = [connection.on("tree", () => this.tellSize()), displays.statusChanged.on(() => this.explain())];
+    this.stopListening = [connection.on("tree", () => this.sendSize()), displays.statusChanged.on(() => this.showState())];
   }
 
   propertiesChanged(): void {
-    this.panel.match();
+    this.panel.update();
   }
 
   dataChanged({ content, stamp }: DisplayData): void {
     if (content.kind !== "image_frame") return;
     this.frame = content;
-    this.image.take(content, (shown) => {
+    this.image.show(content, (shown) => {
       this.state = shown ? "shown" : "unreadable";
-      this.explain();
+      this.showState();
       if (!shown) return;
       this.imageStamp = stamp;
-      this.painted();
+      this.onPainted();
     });
   }
 
@@ -53,7 +53,7 @@ export class ImageDrawing implements Drawing {
     this.frame = null;
     this.image.clear();
     this.state = "none";
-    this.explain();
+    this.showState();
   }
 
   update(): void {
@@ -72,7 +72,7 @@ export class ImageDrawing implements Drawing {
   }
 
   /** Called when a new image is on the canvas, or the panel was resized. */
-  protected painted(): void {
+  protected onPainted(): void {
     // An image alone has no overlay.
   }
 
@@ -89,15 +89,15 @@ export class ImageDrawing implements Drawing {
   }
 
   /** Shows why there is no image, usually with a text of the display's status. */
-  private explain(): void {
+  private showState(): void {
     const { none, unreadable } = strings.images;
-    const cause = this.context.display.troubles[0]?.text;
-    if (this.state === "shown") this.panel.say("");
-    else this.panel.say(this.state === "unreadable" ? unreadable : none, cause);
+    const cause = this.context.display.problems[0]?.text;
+    if (this.state === "shown") this.panel.showText("");
+    else this.panel.showText(this.state === "unreadable" ? unreadable : none, cause);
   }
 
   /** Sends the panel's size to the server, which need not send more pixels than that. */
-  private tellSize(): void {
+  private sendSize(): void {
     const { display, session } = this.context;
     const pixels = (points: number): number => Math.ceil(points * window.devicePixelRatio);
     const { clientWidth, clientHeight } = this.panel.element;

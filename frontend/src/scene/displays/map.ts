@@ -8,7 +8,7 @@ import type { Drawing, DrawingContext } from "./drawing";
 import { mapPalette, type MapScheme } from "./map-palette";
 
 /** Maps are drawn before other transparent objects, and costmaps over maps. */
-const ORDERS: Readonly<Record<MapScheme, number>> = { map: -3, raw: -2, costmap: -1 };
+const RENDER_ORDERS: Readonly<Record<MapScheme, number>> = { map: -3, raw: -2, costmap: -1 };
 
 /** rviz_default_plugins/Map */
 export class MapDrawing implements Drawing {
@@ -35,7 +35,7 @@ export class MapDrawing implements Drawing {
       alpha: rows.number(0.7, "Alpha"),
       seeThrough: scheme !== "map",
       behind: rows.bool(false, "Draw Behind"),
-      order: ORDERS[scheme],
+      order: RENDER_ORDERS[scheme],
     });
   }
 

@@ -6,12 +6,12 @@ export class Pacing {
   constructor(private readonly invalidate: () => void) {}
 
   /** Whether a frame is scheduled. */
-  get waiting(): boolean {
+  get isWaiting(): boolean {
     return this.timer !== undefined;
   }
 
   /** Returns whether to update in a frame at this time; `interval` in ms, 0 for every frame. */
-  due(now: number, interval: number): boolean {
+  isDue(now: number, interval: number): boolean {
     const wait = this.last + interval - now;
     if (wait <= 0) {
       this.last = now;

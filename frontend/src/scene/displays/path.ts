@@ -26,7 +26,7 @@ export class PathDrawing extends ContentDrawing<"pose_marks"> {
     for (const part of [this.thin, this.wide, this.arrows, this.axes]) part.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { points: this.points, arrows: this.arrows.size, axes: this.axes.size, wide: this.wide.root.visible };
   }
 

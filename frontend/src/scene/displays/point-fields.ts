@@ -4,10 +4,10 @@ import type { DrawingContext } from "./drawing";
 /** The fields of selected points, requested from the server on demand. */
 export class PointFieldStore {
   private readonly known = new Map<string, PointFields["fields"] | null>();
-  private readonly forgetAnswers: () => void;
+  private readonly stopListening: () => void;
 
   constructor(private readonly context: DrawingContext) {
-    this.forgetAnswers = context.session.connection.on("point_fields", (answer) => {
+    this.stopListening = context.session.connection.on("point_fields", (answer) => {
       if (answer.display !== context.display.id) return;
       this.known.set(`${answer.key}:${answer.index}`, answer.fields);
       context.session.selection.changed.emit(context.session.selection.selected);
@@ -30,6 +30,6 @@ export class PointFieldStore {
   }
 
   dispose(): void {
-    this.forgetAnswers();
+    this.stopListening();
   }
 }

@@ -25,7 +25,7 @@ export class PoseArrayDrawing extends ContentDrawing<"pose_marks"> {
     for (const part of [this.lines, this.arrows, this.axes]) part.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { arrows: this.arrows.size, axes: this.axes.size };
   }
 

@@ -4,7 +4,7 @@ import { describedNumbers } from "../described-pose";
 import { ArrowBatch } from "../objects/arrow-batch";
 import { AxesBatch } from "../objects/axes-batch";
 import { CovarianceBatch } from "../objects/covariance-batch";
-import type { Described, Hit, SelectionBox } from "../picking";
+import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import { ContentDrawing, type Placed } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 import { colorOf, covarianceStyle, poseArrow, poseAt } from "./styles";
@@ -40,7 +40,7 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
   }
 
   /** Returns a pose as in RViz's Selection panel: in the frame of its message. */
-  describe(key: string): Described | null {
+  describe(key: string): DescriptionRow | null {
     const found = this.drawnContents.find((each) => each.key === key);
     if (!found) return null;
     const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 0] = found.content.poses;
@@ -62,7 +62,7 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
     for (const batch of [this.arrows, this.axes, this.covariances]) batch.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { arrows: this.arrows.size, axes: this.axes.size };
   }
 

@@ -19,7 +19,7 @@ export class RangeDrawing extends ContentDrawing<"range_cone"> {
     this.cones.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { cones: this.cones.size };
   }
 

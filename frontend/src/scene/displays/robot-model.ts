@@ -5,14 +5,14 @@ import type { MovingView } from "../robot/moving-meshes";
 import type { Displacement } from "../robot/link-drawing";
 import { RobotDrawing } from "../robot/robot-drawing";
 import type { Lighting } from "../light";
-import { shade } from "../studio-light";
-import type { Described, Hit, SelectionBox } from "../picking";
+import { setShadowed } from "../studio-light";
+import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import type { Drawing, DrawingContext } from "./drawing";
 
 /** A new robot replaces the old one once its meshes are loaded, or after this time without them. */
 const SWAP_WITHIN_MS = 300;
 /** Links closer than this count as coincident: m, and components of quaternions. */
-const ONE_PLACE = 1e-4;
+const COINCIDENCE = 1e-4;
 
 /** rviz_default_plugins/RobotModel */
 export class RobotModelDrawing implements Drawing {
@@ -21,19 +21,19 @@ export class RobotModelDrawing implements Drawing {
   private next: RobotDrawing | null = null;
   private robotsShown = 0;
   private lighting: Lighting = "Camera";
-  private styleIsOld = true;
+  private isStyleStale = true;
   private contrast: boolean;
   private displaced: Displacement | null = null;
-  private readonly forget: readonly (() => void)[];
+  private readonly unsubscribe: readonly (() => void)[];
 
   constructor(private readonly context: DrawingContext) {
     const { session, display } = context;
     this.root.matrixAutoUpdate = false;
     const take = (robot: RobotScene | undefined): void => {
-      if (robot?.display === display.id) this.take(robot);
+      if (robot?.display === display.id) this.setRobot(robot);
     };
     this.contrast = session.inspect.current.contrast;
-    this.forget = [session.robotChanged.on(take), session.inspect.changed.on(() => this.inspectChanged()), session.comparison.changed.on(() => this.recolor())];
+    this.unsubscribe = [session.robotChanged.on(take), session.inspect.changed.on(() => this.inspectChanged()), session.comparison.changed.on(() => this.recolor())];
     take(session.robots.get(display.id));
   }
 
@@ -43,8 +43,8 @@ export class RobotModelDrawing implements Drawing {
   }
 
   /** Whether the robot has a pose: any link with visuals, or any link if no link has visuals. */
-  get isInPlace(): boolean {
-    return this.shown?.isInPlace ?? false;
+  get hasPose(): boolean {
+    return this.shown?.hasPose ?? false;
   }
 
   /** The number of links with a pose. */
@@ -53,7 +53,7 @@ export class RobotModelDrawing implements Drawing {
   }
 
   /** A key of the visible parts of the robot; empty while no robot or no transform is known. */
-  get seen(): string {
+  get visibleKey(): string {
     const { posed, loading } = this.shown?.progress ?? { posed: 0, loading: 0 };
     const isPlain = this.visualsDrawn === 0 && loading > 0;
     return posed === 0 || isPlain ? "" : [this.robotsShown, posed, loading].join();
@@ -82,7 +82,7 @@ export class RobotModelDrawing implements Drawing {
 
   /** The lighting of the robot; Studio has shadows. */
   set light(lighting: Lighting) {
-    this.styleIsOld ||= lighting !== this.lighting;
+    this.isStyleStale ||= lighting !== this.lighting;
     this.lighting = lighting;
   }
 
@@ -94,28 +94,28 @@ export class RobotModelDrawing implements Drawing {
   }
 
   propertiesChanged(): void {
-    this.styleIsOld = true;
+    this.isStyleStale = true;
   }
 
   update(): void {
-    if (this.styleIsOld && this.shown) {
+    if (this.isStyleStale && this.shown) {
       const { display, session } = this.context;
-      this.shown.style(display.rows, this.contrast, this.lighting, (link) => session.comparison.instead(display.id, link));
-      shade(this.shown.root, this.lighting === "Studio" && !session.comparison.isOld(display.id));
+      this.shown.style(display.rows, this.contrast, this.lighting, (link) => session.comparison.overrideOf(display.id, link));
+      setShadowed(this.shown.root, this.lighting === "Studio" && !session.comparison.isOld(display.id));
     }
-    this.styleIsOld = false;
+    this.isStyleStale = false;
     const { frames } = this.context.session;
     const find = (link: LinkScene, matrix: Matrix4): boolean => {
       const found = framePose(frames, frames.row(link.frame), matrix);
       if (found) this.displaced?.link?.(link.name, matrix);
       return found;
     };
-    this.shown?.place(find, this.covered());
-    this.shown?.look(this.context.camera());
+    this.shown?.place(find, this.hiddenDuplicates());
+    this.shown?.chooseDetail(this.context.camera());
   }
 
-  move(view: MovingView | null): void {
-    this.shown?.move(view);
+  simplify(view: MovingView | null): void {
+    this.shown?.simplify(view);
   }
 
   settled(): boolean {
@@ -130,12 +130,12 @@ export class RobotModelDrawing implements Drawing {
     return this.shown?.pickBox(box) ?? [];
   }
 
-  describe(link: string): Described | null {
+  describe(link: string): DescriptionRow | null {
     return this.shown?.describe(link) ?? null;
   }
 
   inspect(): object {
-    return this.shown?.tell() ?? {};
+    return this.shown?.inspect() ?? {};
   }
 
   /** Returns the origin of a link's frame, for links without visuals. */
@@ -152,7 +152,7 @@ export class RobotModelDrawing implements Drawing {
   }
 
   dispose(): void {
-    for (const forget of this.forget) forget();
+    for (const forget of this.unsubscribe) forget();
     this.next?.dispose();
     this.shown?.dispose();
   }
@@ -161,7 +161,7 @@ export class RobotModelDrawing implements Drawing {
    * Returns a predicate for the links of an old description that are not drawn, because they look the same in the new
    * one and have the same pose.
    */
-  private covered(): ((link: LinkScene) => boolean) | undefined {
+  private hiddenDuplicates(): ((link: LinkScene) => boolean) | undefined {
     const { display, session } = this.context;
     const { comparison, displays, frames, robots } = session;
     const other = comparison.isOld(display.id) ? (comparison.compared?.new.display ?? "") : "";
@@ -169,12 +169,12 @@ export class RobotModelDrawing implements Drawing {
     const frameOf = new Map(robots.get(other)?.links.map(({ name, frame }) => [name, frame]));
     return ({ name, frame }) => {
       const twin = comparison.twinOf(display.id, name);
-      return twin !== undefined && frames.apart(frame, frameOf.get(twin) ?? "") < ONE_PLACE;
+      return twin !== undefined && frames.difference(frame, frameOf.get(twin) ?? "") < COINCIDENCE;
     };
   }
 
   private recolor(): void {
-    this.styleIsOld = true;
+    this.isStyleStale = true;
     this.context.invalidate();
   }
 
@@ -182,11 +182,11 @@ export class RobotModelDrawing implements Drawing {
     const { contrast } = this.context.session.inspect.current;
     if (contrast === this.contrast) return;
     this.contrast = contrast;
-    this.styleIsOld = true;
+    this.isStyleStale = true;
     this.context.invalidate();
   }
 
-  private take(scene: RobotScene): void {
+  private setRobot(scene: RobotScene): void {
     const { session, display, meshes, invalidate } = this.context;
     this.next?.dispose();
     const robot = new RobotDrawing(
@@ -196,7 +196,7 @@ export class RobotModelDrawing implements Drawing {
         session.connection.send({ type: "mesh_status", display: display.id, link, url, error });
       },
       () => {
-        this.styleIsOld = true;
+        this.isStyleStale = true;
         invalidate();
       },
     );
@@ -217,7 +217,7 @@ export class RobotModelDrawing implements Drawing {
     this.robotsShown += 1;
     this.next = null;
     this.root.add(robot.root);
-    this.styleIsOld = true;
+    this.isStyleStale = true;
     this.update();
     this.context.invalidate();
   }

@@ -30,7 +30,7 @@ export class ScrewDrawing extends ContentDrawing<"screw"> {
     this.circles.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { arrows: this.arrows.size };
   }
 

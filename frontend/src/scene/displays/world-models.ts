@@ -22,7 +22,7 @@ export class Displacement {
   }
 
   /** Ends the displacement once the actual poses of these models have changed. */
-  compare(before: Float32Array, after: Float32Array, rowOf: ReadonlyMap<string, number>): void {
+  endIfMoved(before: Float32Array, after: Float32Array, rowOf: ReadonlyMap<string, number>): void {
     if (this.models.size === 0) return;
     for (const [link, row] of rowOf) {
       if (!this.models.has(modelOf(link))) continue;

@@ -1,7 +1,7 @@
 import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "three";
 import type { DisplayData } from "../../connection/data";
 import type { WorldPoses, WorldScene } from "../../protocol";
-import type { Described, Hit, SelectionBox } from "../picking";
+import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import { dataPose, poseMatrix } from "../pose";
 import type { MovingView } from "../robot/moving-meshes";
 import { RobotDrawing } from "../robot/robot-drawing";
@@ -17,9 +17,9 @@ import { WorldSensors } from "./world-sensors";
 const RAYS = "rays ";
 
 /** A box flatter than this share of its width is taken for a ground. */
-const FLAT = 0.02;
+const GROUND_FLATNESS = 0.02;
 /** An object this far below the ground has fallen out of the world, m. */
-const FALLEN = -1;
+const FALLEN_Z = -1;
 
 /** linkwright/World: the links of all models of a simulated world. */
 export class WorldDrawing implements Drawing {
@@ -29,11 +29,11 @@ export class WorldDrawing implements Drawing {
   private placed: { data: DisplayData; content: WorldPoses } | null = null;
   private rowOf = new Map<string, number>();
   private readonly displacement = new Displacement();
-  private styleIsOld = true;
-  private poseIsOld = true;
+  private isStyleStale = true;
+  private isPoseStale = true;
   /** The last bounding box of everything visible, and that box extended to the origins of all links. */
-  private seen = new Box3();
-  private reached = new Box3();
+  private visibleBox = new Box3();
+  private shadowBox = new Box3();
   private readonly lights: WorldLights;
   private readonly sensors = new WorldSensors();
 
@@ -45,14 +45,14 @@ export class WorldDrawing implements Drawing {
 
   dataChanged(data: DisplayData): void {
     const { content } = data;
-    if (content.kind === "world_scene") this.take(content);
+    if (content.kind === "world_scene") this.setScene(content);
     else if (content.kind === "world_poses") {
-      if (this.placed) this.displacement.compare(this.placed.content.poses, content.poses, this.rowOf);
+      if (this.placed) this.displacement.endIfMoved(this.placed.content.poses, content.poses, this.rowOf);
       this.placed = { data, content };
-      this.poseIsOld = true;
+      this.isPoseStale = true;
     } else if (content.kind === "world_rays") {
-      this.sensors.measured(content);
-      this.poseIsOld = true;
+      this.sensors.setRanges(content);
+      this.isPoseStale = true;
     }
   }
 
@@ -67,30 +67,30 @@ export class WorldDrawing implements Drawing {
   }
 
   propertiesChanged(): void {
-    this.styleIsOld = true;
+    this.isStyleStale = true;
   }
 
   update(): void {
     const { shown, context } = this;
     if (!shown) return;
-    if (this.placed?.data.pose === null) this.poseIsOld = true; // it follows its frame
-    if (this.styleIsOld && this.scene) {
+    if (this.placed?.data.pose === null) this.isPoseStale = true; // it follows its frame
+    if (this.isStyleStale && this.scene) {
       this.lights.style(context.display.rows, this.scene);
       shown.style(context.display.rows, context.session.inspect.current.contrast, this.lights.lighting);
       this.lights.shade(shown.root);
       this.sensors.style(context.display.rows);
     }
-    if (this.styleIsOld || this.poseIsOld) {
+    if (this.isStyleStale || this.isPoseStale) {
       this.place(shown);
       this.sensors.place((link) => this.poseOf(link));
-      this.lights.place(this.world(), (link) => this.poseOf(link), () => this.shadowed(shown));
+      this.lights.place(this.world(), (link) => this.poseOf(link), () => this.boxForShadows(shown));
     }
-    this.styleIsOld = this.poseIsOld = false;
-    shown.look(context.camera());
+    this.isStyleStale = this.isPoseStale = false;
+    shown.chooseDetail(context.camera());
   }
 
-  move(view: MovingView | null): void {
-    this.shown?.move(view);
+  simplify(view: MovingView | null): void {
+    this.shown?.simplify(view);
   }
 
   /** The lighting of the world. */
@@ -112,8 +112,8 @@ export class WorldDrawing implements Drawing {
   }
 
   /** Whether any part of the world has a pose. */
-  get isInPlace(): boolean {
-    return this.shown?.isInPlace ?? false;
+  get hasPose(): boolean {
+    return this.shown?.hasPose ?? false;
   }
 
   settled(): boolean {
@@ -139,8 +139,8 @@ export class WorldDrawing implements Drawing {
     const lowest = Math.min(0, ...boxes.map(([link, box]) => (names.has(modelOf(link)) ? 0 : box.min.z)));
     for (const [link, box] of boxes) {
       if (this.isFlat(link)) continue;
-      if (names.has(modelOf(link)) && box.max.z >= lowest + FALLEN) robots.union(box);
-      if (box.max.z < FALLEN) continue;
+      if (names.has(modelOf(link)) && box.max.z >= lowest + FALLEN_Z) robots.union(box);
+      if (box.max.z < FALLEN_Z) continue;
       if (!isLikeGround(box)) world.union(box);
       all.union(box);
     }
@@ -178,7 +178,7 @@ export class WorldDrawing implements Drawing {
     return this.shown?.pickBox(box) ?? [];
   }
 
-  describe(link: string): Described | null {
+  describe(link: string): DescriptionRow | null {
     return this.shown?.describe(link) ?? null;
   }
 
@@ -213,18 +213,18 @@ export class WorldDrawing implements Drawing {
    */
   displace(models: ReadonlyMap<string, Matrix4>): void {
     this.displacement.set(models);
-    this.poseIsOld = true;
+    this.isPoseStale = true;
     this.context.invalidate();
   }
 
   /** Converts a direction from the fixed frame to the frame of the world. */
-  toWorld(direction: Vector3): Vector3 {
+  directionToWorld(direction: Vector3): Vector3 {
     const length = direction.length();
     return direction.clone().transformDirection(this.world().invert()).multiplyScalar(length);
   }
 
   /** Converts a point from the fixed frame to the frame of the world, m. */
-  placeInWorld(point: readonly number[]): number[] {
+  pointToWorld(point: readonly number[]): number[] {
     return new Vector3().fromArray(point).applyMatrix4(this.world().invert()).toArray();
   }
 
@@ -236,7 +236,7 @@ export class WorldDrawing implements Drawing {
   }
 
   inspect(): object {
-    return { revision: this.scene?.revision ?? 0, ...this.shown?.tell(), light: this.lights.tell(), sensors: this.sensors.tell() };
+    return { revision: this.scene?.revision ?? 0, ...this.shown?.inspect(), light: this.lights.inspect(), sensors: this.sensors.inspect() };
   }
 
   dispose(): void {
@@ -246,14 +246,14 @@ export class WorldDrawing implements Drawing {
   }
 
   /** Returns the box for shadows. It is computed from all vertices only when a link has left it, not for each pose. */
-  private shadowed(shown: RobotDrawing): Box3 {
+  private boxForShadows(shown: RobotDrawing): Box3 {
     const origins = (this.scene?.links ?? []).flatMap(({ name, visuals }) => (visuals.length > 0 ? shown.placeOf(name) ?? [] : []));
-    if (this.styleIsOld || !origins.every((origin) => this.reached.containsPoint(origin))) {
-      this.seen = shown.bounds();
-      this.reached = this.seen.clone();
-      for (const origin of origins) this.reached.expandByPoint(origin);
+    if (this.isStyleStale || !origins.every((origin) => this.shadowBox.containsPoint(origin))) {
+      this.visibleBox = shown.bounds();
+      this.shadowBox = this.visibleBox.clone();
+      for (const origin of origins) this.shadowBox.expandByPoint(origin);
     }
-    return this.seen;
+    return this.visibleBox;
   }
 
   private place(shown: RobotDrawing): void {
@@ -270,7 +270,7 @@ export class WorldDrawing implements Drawing {
     });
   }
 
-  private take(scene: WorldScene): void {
+  private setScene(scene: WorldScene): void {
     const { session, display, meshes, invalidate } = this.context;
     this.shown?.dispose();
     this.scene = scene;
@@ -281,17 +281,17 @@ export class WorldDrawing implements Drawing {
       meshes,
       (link, url, error) => session.connection.send({ type: "mesh_status", display: display.id, link, url, error }),
       () => {
-        this.styleIsOld = true;
+        this.isStyleStale = true;
         invalidate();
       },
     );
     this.root.add(this.shown.root);
-    this.sensors.take(scene);
-    this.styleIsOld = true;
+    this.sensors.setScene(scene);
+    this.isStyleStale = true;
   }
 }
 
 function isLikeGround(box: Box3): boolean {
   const { x, y, z } = box.getSize(new Vector3());
-  return z < FLAT * Math.min(x, y);
+  return z < GROUND_FLATNESS * Math.min(x, y);
 }

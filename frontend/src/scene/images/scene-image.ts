@@ -31,7 +31,7 @@ export class SceneImage {
     renderer.readRenderTargetPixels(this.target, 0, 0, width, height, this.bytes);
     renderer.setRenderTarget(null);
     renderer.setClearColor(color, alpha);
-    this.context.putImageData(upright(this.bytes, width, height), 0, 0);
+    this.context.putImageData(toImageData(this.bytes, width, height), 0, 0);
   }
 
   dispose(): void {
@@ -40,7 +40,7 @@ export class SceneImage {
 }
 
 /** Returns an image with rows from the top and colours not premultiplied by alpha, as canvases expect. */
-function upright(bytes: Uint8Array, width: number, height: number): ImageData {
+function toImageData(bytes: Uint8Array, width: number, height: number): ImageData {
   const image = new ImageData(width, height);
   const { data } = image;
   const row = width * 4;

@@ -1,18 +1,18 @@
 import { Color, Matrix4, Vector3, type Object3D } from "three";
 import { CopyBatch } from "../objects/copy-batch";
-import { axesGeometry, ballGeometry } from "../objects/geometries";
+import { axesGeometry, sphereGeometry } from "../objects/geometries";
 import { LabelBatch } from "../objects/label-batch";
 import { linkPose, type InspectedRobot } from "./inspected-robot";
 
 /** Sizes in units of the robot's mark size. */
-const AXES = 0.42;
-const BALL = 0.11;
-const LABEL = 0.17;
+const AXES_SIZE = 0.42;
+const BALL_SIZE = 0.11;
+const LABEL_SIZE = 0.17;
 /** The size of a frame relative to its parent's, and the minimum size. */
-const SHRINKING = 0.88;
-const SMALLEST = 0.3;
+const SIZE_RATIO = 0.88;
+const MIN_SIZE = 0.3;
 /** With more frames than this, only levels are written, not names. */
-const MOST_NAMES = 60;
+const MAX_NAMES = 60;
 /** Hues advance by the golden ratio, so that consecutive levels differ. */
 const HUE_STEP = 0.618;
 
@@ -25,7 +25,7 @@ export class DepthMarks {
 
   constructor(parent: Object3D) {
     this.axes = new CopyBatch(parent, axesGeometry(1, 0.06, 8), { isOverlay: true });
-    this.balls = new CopyBatch(parent, ballGeometry(12), { isOverlay: true });
+    this.balls = new CopyBatch(parent, sphereGeometry(12), { isOverlay: true });
     parent.add(this.labels.root);
   }
 
@@ -37,7 +37,7 @@ export class DepthMarks {
         return deepest === null || depth <= deepest ? [{ robot, link, depth }] : [];
       }),
     );
-    const named = frames.length <= MOST_NAMES;
+    const named = frames.length <= MAX_NAMES;
     const text = (depth: number, link: string): string => (named ? `${depth} ${link}` : String(depth));
     this.axes.begin(frames.length);
     this.balls.begin(frames.length);
@@ -46,10 +46,10 @@ export class DepthMarks {
     const pose = new Matrix4();
     for (const { robot, link, depth } of frames) {
       if (!linkPose(robot, link, pose)) continue;
-      const size = robot.unit * Math.max(SMALLEST, SHRINKING ** depth);
-      this.labels.add(text(depth, link), new Vector3().setFromMatrixPosition(pose), LABEL * size, 0, 1);
-      this.axes.add(pose.clone().scale(cube(AXES * size)));
-      this.balls.add(pose.scale(cube(BALL * size)), 0, 1, levelColor(depth));
+      const size = robot.unit * Math.max(MIN_SIZE, SIZE_RATIO ** depth);
+      this.labels.add(text(depth, link), new Vector3().setFromMatrixPosition(pose), LABEL_SIZE * size, 0, 1);
+      this.axes.add(pose.clone().scale(cube(AXES_SIZE * size)));
+      this.balls.add(pose.scale(cube(BALL_SIZE * size)), 0, 1, levelColor(depth));
       this.levels[depth] = (this.levels[depth] ?? 0) + 1;
     }
     for (const batch of [this.axes, this.balls, this.labels]) batch.end();

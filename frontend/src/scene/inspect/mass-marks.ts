@@ -1,7 +1,7 @@
 import { BufferAttribute, Matrix4, Quaternion, Vector3, type BufferGeometry, type Object3D } from "three";
 import type { LinkInertia } from "../../protocol";
 import { CopyBatch } from "../objects/copy-batch";
-import { ballGeometry, cubeGeometry } from "../objects/geometries";
+import { sphereGeometry, cubeGeometry } from "../objects/geometries";
 import { LabelBatch } from "../objects/label-batch";
 import { linkPose, type InspectedRobot } from "./inspected-robot";
 import { VertexStream } from "./vertex-stream";
@@ -11,9 +11,9 @@ const IMPLAUSIBLE = 0xff4d42;
 const TOTAL = 0xffd23c;
 const BOX_ALPHA = 0.3;
 /** Sizes of marks in units of the robot's mark size. */
-const BALL = 0.16;
-const TOTAL_BALL = 0.3;
-const LABEL = 0.2;
+const BALL_SIZE = 0.16;
+const TOTAL_BALL_SIZE = 0.3;
+const LABEL_SIZE = 0.2;
 /**
  * An ellipsoid with the inertia of a box has semi-axes of this share of the box's edges: m/5 (b² + c²) = m/12 (B² +
  * C²).
@@ -41,9 +41,9 @@ export class MassMarks {
 
   constructor(parent: Object3D) {
     this.boxes = new CopyBatch(parent, cubeGeometry(), { isOverlay: true });
-    this.ellipsoids = new CopyBatch(parent, ballGeometry(24), { isOverlay: true });
+    this.ellipsoids = new CopyBatch(parent, sphereGeometry(24), { isOverlay: true });
     this.edges = new VertexStream(parent, "lines");
-    this.balls = new CopyBatch(parent, quartered(ballGeometry(16)), { isOverlay: true });
+    this.balls = new CopyBatch(parent, paintQuarters(sphereGeometry(16)), { isOverlay: true });
     parent.add(this.labels.root);
   }
 
@@ -79,7 +79,7 @@ export class MassMarks {
       const implausible = robot.implausible.has(link.name);
       const { inertia } = link;
       center.fromArray(inertia?.center ?? [0, 0, 0]).applyMatrix4(pose);
-      if (implausible) this.labels.add(`! ${link.name}`, center, LABEL * robot.unit, 0, 1);
+      if (implausible) this.labels.add(`! ${link.name}`, center, LABEL_SIZE * robot.unit, 0, 1);
       if (!inertia) continue;
       this.markLink(inertia, pose, center, implausible ? IMPLAUSIBLE : PLAUSIBLE, robot.unit, choice);
       sum.addScaledVector(center, inertia.mass);
@@ -88,7 +88,7 @@ export class MassMarks {
     if (!(mass > 0) || !choice.centers) return;
     const total = sum.divideScalar(mass);
     this.totals.push(total);
-    this.balls.add(sized(pose.identity().setPosition(total), TOTAL_BALL * robot.unit), 0, 1, TOTAL);
+    this.balls.add(sized(pose.identity().setPosition(total), TOTAL_BALL_SIZE * robot.unit), 0, 1, TOTAL);
   }
 
   private markLink(
@@ -101,7 +101,7 @@ export class MassMarks {
   ): void {
     if (choice.centers && inertia.mass !== 0) {
       const look = color === PLAUSIBLE ? 0xffffff : color;
-      this.balls.add(sized(pose.clone().setPosition(center), BALL * unit), 0, 1, look);
+      this.balls.add(sized(pose.clone().setPosition(center), BALL_SIZE * unit), 0, 1, look);
     }
     const [a = 0, b = 0, c = 0] = inertia.box;
     if (inertia.box.length === 0) return;
@@ -131,7 +131,7 @@ function turned(x: number, y: number, z: number, w: number): Matrix4 {
 }
 
 /** Paints a ball with the symbol of a centre of mass: quarters in black and white. */
-function quartered(ball: BufferGeometry): BufferGeometry {
+function paintQuarters(ball: BufferGeometry): BufferGeometry {
   const flat = ball.toNonIndexed();
   const [positions, colors] = [flat.getAttribute("position"), flat.getAttribute("color")];
   for (let i = 0; i < positions.count; i += 3) {

@@ -18,8 +18,8 @@ import type { MeshLibrary } from "../meshes/mesh-library";
 import { poseMatrix } from "../pose";
 
 /** The factor and offset by which the colours of a control under the pointer are brightened. */
-const BRIGHTER = 1.4;
-const LIGHTER = 0.15;
+const BRIGHTNESS_FACTOR = 1.4;
+const BRIGHTNESS_OFFSET = 0.15;
 
 /** A control of an interactive marker: its markers and its orientation. */
 export class ControlHandle {
@@ -31,7 +31,7 @@ export class ControlHandle {
   private readonly objects: MarkerObject[] = [];
   private readonly own: Quaternion;
   private readonly framed = new Quaternion();
-  private bright = false;
+  private isHighlighted = false;
 
   constructor(
     readonly control: InteractiveControl,
@@ -66,8 +66,8 @@ export class ControlHandle {
   }
 
   set highlighted(bright: boolean) {
-    if (bright === this.bright) return;
-    this.bright = bright;
+    if (bright === this.isHighlighted) return;
+    this.isHighlighted = bright;
     this.arrangeSolids();
     for (const { root } of this.objects) root.traverse((object) => brighten(object, bright));
   }
@@ -82,7 +82,7 @@ export class ControlHandle {
     if (mode === "inherit") this.framed.copy(orientation);
     else if (mode === "fixed") {
       this.framed.setFromAxisAngle(new Vector3(1, 0, 0).applyQuaternion(this.own), this.rotation);
-    } else this.framed.copy(facing(this.own, camera, reference));
+    } else this.framed.copy(facingOrientation(this.own, camera, reference));
     const independent = mode === "view_facing" && this.control.independent_orientation;
     this.root.quaternion.copy(independent ? orientation : this.framed);
   }
@@ -107,8 +107,8 @@ export class ControlHandle {
     this.solids.begin();
     for (const marker of this.control.markers) {
       if (!isSolid(marker.shape)) continue;
-      const lit = marker.color.map((each, i) => (i < 3 ? Math.min(1, each * BRIGHTER + LIGHTER) : each));
-      this.solids.add({ ...marker, color: this.bright ? lit : marker.color }, poseOf(marker));
+      const lit = marker.color.map((each, i) => (i < 3 ? Math.min(1, each * BRIGHTNESS_FACTOR + BRIGHTNESS_OFFSET) : each));
+      this.solids.add({ ...marker, color: this.isHighlighted ? lit : marker.color }, poseOf(marker));
     }
     this.solids.end();
   }
@@ -122,7 +122,7 @@ function brighten(object: Object3D, bright: boolean): void {
   const material = (object as Partial<Mesh>).material;
   const materials: readonly Material[] = material ? [material].flat() : [];
   for (const each of materials) {
-    if ("color" in each && each.color instanceof Color) each.color.multiplyScalar(bright ? BRIGHTER : 1 / BRIGHTER);
+    if ("color" in each && each.color instanceof Color) each.color.multiplyScalar(bright ? BRIGHTNESS_FACTOR : 1 / BRIGHTNESS_FACTOR);
   }
 }
 
@@ -130,7 +130,7 @@ function brighten(object: Object3D, bright: boolean): void {
  * Returns the orientation that turns the control's axis along the line of sight and its z up, as RViz does for controls
  * that face the viewer.
  */
-function facing(own: Quaternion, camera: Camera, reference: Matrix4): Quaternion {
+function facingOrientation(own: Quaternion, camera: Camera, reference: Matrix4): Quaternion {
   const view = new Quaternion().setFromRotationMatrix(camera.matrixWorld);
   const forward = new Vector3(0, 0, -1).applyQuaternion(view);
   const up = new Vector3(0, 1, 0).applyQuaternion(view);

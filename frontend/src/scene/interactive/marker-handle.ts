@@ -64,7 +64,7 @@ export class MarkerHandle {
   }
 
   /** Whether the line of the dragged control is shown. */
-  get isAided(): boolean {
+  get isAidShown(): boolean {
     return this.aid.shown;
   }
 
@@ -133,7 +133,7 @@ export class MarkerHandle {
     const inverse = this.inverse();
     const ray = event.ray.ray.clone().applyMatrix4(inverse);
     const turn = new Quaternion().setFromRotationMatrix(inverse.clone().multiply(camera.matrixWorld));
-    const moved = this.drag.drag.moved({
+    const moved = this.drag.drag.poseAfter({
       ray: new Ray(ray.origin, ray.direction.normalize()),
       dx: event.dx,
       dy: event.dy,
@@ -149,7 +149,7 @@ export class MarkerHandle {
     return true;
   }
 
-  letGo(): void {
+  release(): void {
     this.drag = null;
   }
 

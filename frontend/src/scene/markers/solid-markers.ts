@@ -8,8 +8,8 @@ import { paint, unitBox, unitCylinder, unitSphere } from "../objects/geometries"
 /** The proportions of an arrow marker without points, before its scale. */
 const ARROW: ArrowShape = { shaftLength: 0.77, shaftDiameter: 1, headLength: 0.23, headDiameter: 2 };
 /** The share of the head in an arrow between points, if the marker does not specify it. */
-const HEAD = 0.23;
-const STRIP_HEAD = 0.25;
+const HEAD_SHARE = 0.23;
+const STRIP_HEAD_SHARE = 0.25;
 /** The unit shapes; spheres and cylinders have a radius of one, so that their scale must be halved. */
 const SHAPES: Readonly<Record<string, { geometry: BufferGeometry; half: readonly [boolean, boolean, boolean] }>> = {
   cube: { geometry: unitBox, half: [false, false, false] },
@@ -197,7 +197,7 @@ function arrowsOf(marker: MarkerShape, pose: Matrix4): Arrow[] {
     return [{ pose: pose.clone().multiply(new Matrix4().makeScale(x, y, z)), shape: ARROW, color, alpha }];
   }
   const [shaftDiameter = 0, headDiameter = 0, head = 0] = scale;
-  const part = marker.shape === "arrow" ? HEAD : STRIP_HEAD;
+  const part = marker.shape === "arrow" ? HEAD_SHARE : STRIP_HEAD_SHARE;
   const arrows: Arrow[] = [];
   for (let i = 0; i + 5 < points.length; i += 3) {
     const from = new Vector3().fromArray(points, i);

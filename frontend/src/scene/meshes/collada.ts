@@ -26,25 +26,25 @@ export async function readCollada(data: ArrayBuffer, url: string, files: MeshFil
 /** Returns the text as valid XML. The loader itself reports errors only on the console. */
 function checkedXml(written: string): string {
   let text = written;
-  let xml = parsed(text);
-  const broken = fault(xml);
+  let xml = parseXml(text);
+  const broken = parserError(xml);
   if (broken) {
-    text = mended(written);
-    xml = parsed(text);
+    text = fixXml(written);
+    xml = parseXml(text);
     // Browsers word the error differently, but all of them have the line as the first number after "line".
     const line = /line\D*(\d+)/i.exec(broken.textContent)?.[1] ?? "";
-    if (fault(xml)) throw new MeshError(strings.meshes.dae.notXml(line));
+    if (parserError(xml)) throw new MeshError(strings.meshes.dae.notXml(line));
   }
   const root = xml.documentElement.tagName;
   if (root.replace(/^.*:/, "") !== "COLLADA") throw new MeshError(strings.meshes.dae.root(root));
   return text;
 }
 
-function parsed(text: string): Document {
+function parseXml(text: string): Document {
   return new DOMParser().parseFromString(text, "application/xml");
 }
 
-function fault(xml: Document): Element | undefined {
+function parserError(xml: Document): Element | undefined {
   return xml.getElementsByTagName("parsererror")[0];
 }
 
@@ -52,7 +52,7 @@ function fault(xml: Document): Element | undefined {
  * Fixes what XML forbids but the readers of RViz and Gazebo accept: `<` and `&` in values, as in the node name
  * `<STL_BINARY>` of assimp, hyphens in comments, and missing blanks between attributes.
  */
-export function mended(text: string): string {
+export function fixXml(text: string): string {
   return text
     .replace(/<!--[\s\S]*?-->/g, "")
     .replace(/&(?!#\d+;|#x[\da-f]+;|\w+;)/gi, "&amp;")

@@ -3,7 +3,7 @@ import { strings } from "../../strings";
 import { countText, MeshError } from "./mesh-error";
 
 /** The number of vertices that are not finite, and of the triangles with such vertices. */
-export interface Unreal {
+export interface NonFiniteCounts {
   vertices: number;
   /** The triangles with such a vertex. */
   triangles: number;
@@ -17,7 +17,7 @@ type Positions = BufferAttribute | InterleavedBufferAttribute;
  * Collapses triangles with a vertex that is NaN or infinite to a point, so that they are not drawn and bounds are
  * valid. The geometry's groups stay.
  */
-export function collapseUnreal(geometry: BufferGeometry): Unreal {
+export function collapseNonFinite(geometry: BufferGeometry): NonFiniteCounts {
   const positions = geometry.getAttribute("position") as Positions | undefined;
   if (!positions) return { vertices: 0, triangles: 0, ofTriangles: 0 };
   const { index } = geometry;
@@ -50,8 +50,8 @@ export function collapseUnreal(geometry: BufferGeometry): Unreal {
  *
  * @throws MeshError if no triangle is left.
  */
-export function unrealProblem(found: readonly Unreal[]): string | null {
-  const sum = (what: keyof Unreal): number => found.reduce((total, each) => total + each[what], 0);
+export function nonFiniteProblem(found: readonly NonFiniteCounts[]): string | null {
+  const sum = (what: keyof NonFiniteCounts): number => found.reduce((total, each) => total + each[what], 0);
   const [vertices, triangles] = [sum("vertices"), sum("triangles")];
   if (triangles > 0 && triangles === sum("ofTriangles")) throw new MeshError(strings.meshes.onlyNotNumbers(countText(vertices)));
   return vertices + triangles > 0 ? strings.meshes.notNumbers(countText(vertices), countText(triangles)) : null;

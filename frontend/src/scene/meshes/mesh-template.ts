@@ -11,7 +11,7 @@ import {
 import { strings } from "../../strings";
 import { mapsOf, type Surface } from "../materials";
 import { MeshError } from "./mesh-error";
-import { collapseUnreal, unrealProblem, type Unreal } from "./mesh-numbers";
+import { collapseNonFinite, nonFiniteProblem, type NonFiniteCounts } from "./mesh-numbers";
 
 /** A material of a mesh file. */
 export interface OwnMaterial {
@@ -45,7 +45,7 @@ export const UNCOLOURED_GREY = 0.6;
 export interface Flattened {
   parts: MeshPart[];
   /** The counts of non-finite vertices of each part. */
-  unreal: Unreal[];
+  nonFinite: NonFiniteCounts[];
 }
 
 /**
@@ -55,18 +55,18 @@ export interface Flattened {
 export function flatten(root: Object3D, isOwn: (material: Material) => boolean): Flattened {
   root.updateMatrixWorld(true);
   const parts: MeshPart[] = [];
-  const unreal: Unreal[] = [];
+  const nonFinite: NonFiniteCounts[] = [];
   root.traverse((object) => {
     if (!(object instanceof Mesh)) return;
     const mesh = object as Mesh;
     const geometry = mesh.geometry.clone().applyMatrix4(mesh.matrixWorld);
-    unreal.push(collapseUnreal(geometry));
+    nonFinite.push(collapseNonFinite(geometry));
     if (!geometry.hasAttribute("normal")) geometry.computeVertexNormals();
     const materials = Array.isArray(mesh.material) ? mesh.material : [mesh.material];
     const own = materials.map((material) => (isOwn(material) ? ownMaterial(material) : null));
     parts.push({ geometry, materials: own, names: namesOf(object) });
   });
-  return { parts, unreal };
+  return { parts, nonFinite };
 }
 
 /**
@@ -74,9 +74,9 @@ export function flatten(root: Object3D, isOwn: (material: Material) => boolean):
  *
  * @throws MeshError if nothing can be drawn.
  */
-export function template(format: string, { parts, unreal }: Flattened, problem: string | null): MeshTemplate {
-  if (unreal.every(({ ofTriangles }) => ofTriangles === 0)) throw new MeshError(strings.meshes.noFaces(format));
-  const problems = [problem, unrealProblem(unreal)].filter((each) => each !== null);
+export function template(format: string, { parts, nonFinite }: Flattened, problem: string | null): MeshTemplate {
+  if (nonFinite.every(({ ofTriangles }) => ofTriangles === 0)) throw new MeshError(strings.meshes.noFaces(format));
+  const problems = [problem, nonFiniteProblem(nonFinite)].filter((each) => each !== null);
   return { parts, problem: problems.join("; ") || null };
 }
 

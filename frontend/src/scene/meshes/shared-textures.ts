@@ -12,15 +12,15 @@ export class SharedTextures {
 
   constructor(private readonly load: (url: string) => Promise<Texture> = loadTexture) {}
 
-  /** Returns the texture at `url`. The caller must release it with `giveBack`, even if it cannot be loaded. */
-  take(url: string): Promise<Texture> {
+  /** Returns the texture at `url`. The caller must release it with `release`, even if it cannot be loaded. */
+  acquire(url: string): Promise<Texture> {
     let known = this.shared.get(url);
     if (!known) this.shared.set(url, (known = { texture: this.load(url), users: 0 }));
     known.users++;
     return known.texture;
   }
 
-  giveBack(url: string): void {
+  release(url: string): void {
     const known = this.shared.get(url);
     if (!known || --known.users > 0) return;
     this.shared.delete(url);

@@ -23,17 +23,17 @@ export interface StandIn {
   /** The levels from the finest, which has all triangles, to the coarsest. */
   readonly levels: readonly StandInLevel[];
   /** The bounding sphere: x y z of its centre, radius. */
-  readonly ball: readonly [number, number, number, number];
+  readonly sphere: readonly [number, number, number, number];
 }
 
 /** The maximum errors of the levels, as shares of the mesh's size. */
-const STEPS = [0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1];
+const ERROR_STEPS = [0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1];
 /** A level must have at least this share of triangles fewer than the level before. */
-const WORTH = 0.2;
+const MIN_SAVING = 0.2;
 /** The weight of errors in normals, as a share of the mesh's size. */
 const NORMAL_WEIGHT = 0.2;
 /** Corners at one place share a vertex if the cosine between their normals is at least this: 30 degrees. */
-const SMOOTH = 0.866;
+const MIN_COSINE = 0.866;
 const COMPONENTS = 3;
 
 /** Simplifies a mesh repeatedly, each time as far as an error permits. */
@@ -44,17 +44,17 @@ export function standIn(mesh: Triangles, simplifier: Simplifier): StandIn {
   const weights = [NORMAL_WEIGHT, NORMAL_WEIGHT, NORMAL_WEIGHT];
   let finest = index;
   let error = 0;
-  for (const step of STEPS) {
+  for (const step of ERROR_STEPS) {
     if (finest.length === 0) break;
     const [fewer, off] = simplifier.simplifyWithAttributes(
       finest, positions, COMPONENTS, normals, COMPONENTS, weights, null, 0, step, ["Prune"],
     );
-    if (fewer.length > (1 - WORTH) * finest.length) continue;
+    if (fewer.length > (1 - MIN_SAVING) * finest.length) continue;
     error += off * scale; // each starts where the one before ended
     levels.push({ error, index: fewer });
     finest = fewer;
   }
-  return { positions, normals, levels, ball: ballAround(positions) };
+  return { positions, normals, levels, sphere: boundingSphere(positions) };
 }
 
 /**
@@ -80,7 +80,7 @@ function weld({ positions, normals, index }: Triangles, simplifier: Simplifier):
     const isUnlit = x === 0 && y === 0 && z === 0;
     while (found > 0 && !isUnlit) {
       const i = 3 * (found - 1);
-      if (x * (first[i] ?? 0) + y * (first[i + 1] ?? 0) + z * (first[i + 2] ?? 0) >= SMOOTH) break;
+      if (x * (first[i] ?? 0) + y * (first[i + 1] ?? 0) + z * (first[i + 2] ?? 0) >= MIN_COSINE) break;
       found = before[found - 1] ?? 0;
     }
     if (found === 0) {
@@ -100,11 +100,11 @@ function weld({ positions, normals, index }: Triangles, simplifier: Simplifier):
     const length = Math.hypot(sum[i] ?? 0, sum[i + 1] ?? 0, sum[i + 2] ?? 0) || 1;
     for (let j = i; j < i + 3; j++) sum[j] = (sum[j] ?? 0) / length;
   }
-  return { positions: at.slice(0, 3 * count), normals: sum.slice(0, 3 * count), index: withArea(joined) };
+  return { positions: at.slice(0, 3 * count), normals: sum.slice(0, 3 * count), index: withoutDegenerate(joined) };
 }
 
 /** Returns the triangles without those that have two equal corners. */
-function withArea(index: Uint32Array): Uint32Array {
+function withoutDegenerate(index: Uint32Array): Uint32Array {
   let kept = 0;
   for (let i = 0; i + 2 < index.length; i += 3) {
     const [a = 0, b = 0, c = 0] = index.subarray(i, i + 3);
@@ -115,7 +115,7 @@ function withArea(index: Uint32Array): Uint32Array {
   return index.slice(0, kept);
 }
 
-function ballAround(positions: Float32Array): [number, number, number, number] {
+function boundingSphere(positions: Float32Array): [number, number, number, number] {
   const [least, most] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
   positions.forEach((each, i) => {
     least[i % 3] = Math.min(least[i % 3] ?? each, each);

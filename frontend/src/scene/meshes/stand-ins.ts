@@ -3,7 +3,7 @@ import type { StandIn, Triangles } from "./stand-in";
 import type { StandInAnswer, StandInRequest } from "./stand-in-worker";
 
 /** Larger meshes are not copied to a worker. */
-const MOST_CORNERS = 9_000_000;
+const MAX_CORNERS = 9_000_000;
 
 /** The part of `Worker` that the page uses for stand-ins. */
 export interface StandInWorker {
@@ -15,8 +15,8 @@ export interface StandInWorker {
 /** Computes stand-ins of meshes on demand; the worker is loaded with the first request. */
 export class StandIns {
   private worker: StandInWorker | null = null;
-  private readonly made = new WeakMap<BufferGeometry, readonly StandIn[] | "waits" | "none">();
-  private readonly asked = new Map<number, BufferGeometry>();
+  private readonly results = new WeakMap<BufferGeometry, readonly StandIn[] | "waits" | "none">();
+  private readonly requests = new Map<number, BufferGeometry>();
   private count = 0;
 
   constructor(private readonly start: () => StandInWorker) {}
@@ -26,36 +26,36 @@ export class StandIns {
    * if there are none.
    */
   of(geometry: BufferGeometry): readonly StandIn[] | null {
-    const known = this.made.get(geometry);
-    if (known === undefined) this.ask(geometry);
+    const known = this.results.get(geometry);
+    if (known === undefined) this.request(geometry);
     return known === undefined || known === "waits" ? null : known === "none" ? [] : known;
   }
 
-  private ask(geometry: BufferGeometry): void {
+  private request(geometry: BufferGeometry): void {
     const pieces = piecesOf(geometry);
-    this.made.set(geometry, pieces ? "waits" : "none");
+    this.results.set(geometry, pieces ? "waits" : "none");
     if (!pieces) return;
-    this.worker ??= this.begin();
+    this.worker ??= this.startWorker();
     this.count += 1;
-    this.asked.set(this.count, geometry);
+    this.requests.set(this.count, geometry);
     const arrays = pieces.flatMap(({ positions, normals, index }) => [positions, normals, ...(index ? [index] : [])]);
     this.worker.postMessage({ id: this.count, pieces }, [...new Set(arrays.map(({ buffer }) => buffer as ArrayBuffer))]);
   }
 
-  private begin(): StandInWorker {
+  private startWorker(): StandInWorker {
     const worker = this.start();
-    worker.onmessage = ({ data: { id, standIns } }) => this.answered(id, standIns);
+    worker.onmessage = ({ data: { id, standIns } }) => this.onAnswer(id, standIns);
     // If the browser does not run the worker, everything is drawn in full.
     worker.onerror = () => {
-      for (const id of [...this.asked.keys()]) this.answered(id, null);
+      for (const id of [...this.requests.keys()]) this.onAnswer(id, null);
     };
     return worker;
   }
 
-  private answered(id: number, standIns: readonly StandIn[] | null): void {
-    const geometry = this.asked.get(id);
-    this.asked.delete(id);
-    if (geometry) this.made.set(geometry, standIns ?? "none");
+  private onAnswer(id: number, standIns: readonly StandIn[] | null): void {
+    const geometry = this.requests.get(id);
+    this.requests.delete(id);
+    if (geometry) this.results.set(geometry, standIns ?? "none");
   }
 }
 
@@ -67,7 +67,7 @@ function piecesOf(geometry: BufferGeometry): Triangles[] | null {
   const [position, normal] = [geometry.getAttribute("position"), geometry.getAttribute("normal")];
   const corners = geometry.index?.count ?? position.count;
   const isPlain = [position, normal].every((each) => each.itemSize === 3 && each.array instanceof Float32Array && !("data" in each));
-  if (!isPlain || corners > MOST_CORNERS || corners === 0) return null;
+  if (!isPlain || corners > MAX_CORNERS || corners === 0) return null;
   const all = geometry.index ? Uint32Array.from(geometry.index.array) : null;
   const [positions, normals] = [position.array as Float32Array, normal.array as Float32Array];
   const groups = geometry.groups.length > 0 ? geometry.groups : [{ start: 0, count: corners }];

@@ -1,5 +1,5 @@
 import { Euler, Matrix4, Quaternion, Vector3 } from "three";
-import { tidy } from "../../state/modelling/shapes";
+import { roundNoise } from "../../state/modelling/shapes";
 
 const ONE = new Vector3(1, 1, 1);
 
@@ -17,5 +17,5 @@ export function entityMatrix(pose: readonly number[]): Matrix4 {
 export function entityPose(matrix: Matrix4): number[] {
   const at = new Vector3().setFromMatrixPosition(matrix);
   const turn = new Euler().setFromRotationMatrix(matrix, "ZYX");
-  return [at.x, at.y, at.z, turn.x, turn.y, turn.z].map(tidy);
+  return [at.x, at.y, at.z, turn.x, turn.y, turn.z].map(roundNoise);
 }

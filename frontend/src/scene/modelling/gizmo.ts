@@ -20,11 +20,11 @@ export class Gizmo {
     this.controls = new TransformControls(stage.viewport.camera);
     this.controls.size = matchMedia("(pointer: coarse)").matches ? LARGE : SIZE;
     this.helper = this.controls.getHelper();
-    stage.aids.add(this.frame, this.helper);
+    stage.overlays.add(this.frame, this.helper);
     this.controls.addEventListener("change", () => stage.loop.invalidate());
   }
 
-  get held(): boolean {
+  get isHeld(): boolean {
     return this.controls.dragging;
   }
 
@@ -52,7 +52,7 @@ export class Gizmo {
   }
 
   /** Returns the position of an axis's arrow or ring on the canvas, pixels; for tests. */
-  seenAt(axis: Vector3): { x: number; y: number } {
+  positionOf(axis: Vector3): { x: number; y: number } {
     const { camera, size } = this.stage.viewport;
     const angle = camera instanceof PerspectiveCamera ? (camera.fov * Math.PI) / 180 : 1;
     const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld);
@@ -73,7 +73,7 @@ export class Gizmo {
     if (!this.hover(event)) return false;
     this.helper.updateMatrixWorld(true); // the plane of this handle
     this.controls.pointerDown(this.pointer(event, 0));
-    return this.held;
+    return this.isHeld;
   }
 
   /** Drags the handle; the steps are in m and rad, 0 for none. */

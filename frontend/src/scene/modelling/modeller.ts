@@ -25,7 +25,7 @@ export class Modeller {
   ) {
     const { modelling, simulation, frames, data } = session;
     this.lights = new LightMarks(modelling);
-    stage.aids.add(this.lights.root);
+    stage.overlays.add(this.lights.root);
     this.manipulation = new Manipulation(stage, modelling, (moved) => this.displace(moved));
     this.placer = new Placer(stage, modelling);
     modelling.changed.on(() => this.follow());
@@ -82,7 +82,7 @@ export class Modeller {
     const { picker } = this.stage;
     const ray = picker.rayAt(x, y);
     const light = this.lights.pick(ray);
-    const found = picker.along(ray);
+    const found = picker.alongRay(ray);
     if (light && (!found || light.distance < found.hit.distance)) return light.name;
     if (!(found?.drawing instanceof WorldDrawing)) return null;
     const name = modelOf(found.hit.key);

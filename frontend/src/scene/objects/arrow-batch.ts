@@ -27,7 +27,7 @@ export class ArrowBatch {
   private readonly shafts: CopyBatch;
   private readonly heads: CopyBatch;
   /** The indices of the arrows that have a shaft. */
-  private shafted: number[] = [];
+  private withShaft: number[] = [];
   private readonly matrix = new Matrix4();
   private readonly step = new Matrix4();
 
@@ -43,7 +43,7 @@ export class ArrowBatch {
 
   /** Removes all arrows; at most `expected` will be added. */
   begin(expected: number): void {
-    this.shafted = [];
+    this.withShaft = [];
     this.shafts.begin(expected);
     this.heads.begin(expected);
   }
@@ -53,7 +53,7 @@ export class ArrowBatch {
     const { shaftLength, shaftDiameter, headLength, headDiameter } = shape;
     const { color, headColor = color, alpha = 1, grey = 0 } = look;
     if (shaftLength > 0) {
-      this.shafted.push(this.size);
+      this.withShaft.push(this.size);
       this.step.makeScale(shaftLength, shaftDiameter, shaftDiameter);
       this.shafts.add(this.matrix.multiplyMatrices(pose, this.step), grey, alpha, color);
     }
@@ -75,7 +75,7 @@ export class ArrowBatch {
   pick(ray: Raycaster): CopyHit | null {
     const [shaft, head] = [this.shafts.pick(ray), this.heads.pick(ray)];
     if (!shaft || (head && head.distance <= shaft.distance)) return head;
-    return { ...shaft, copy: this.shafted[shaft.copy] ?? 0 };
+    return { ...shaft, copy: this.withShaft[shaft.copy] ?? 0 };
   }
 
   dispose(): void {

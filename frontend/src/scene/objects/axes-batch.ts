@@ -5,7 +5,7 @@ import { axesGeometry } from "./geometries";
 /** Any number of axes of one size in one draw call: x red, y green, z blue. */
 export class AxesBatch {
   private copies: CopyBatch;
-  private made = "";
+  private shapeKey = "";
 
   constructor(
     private readonly parent: Object3D,
@@ -23,7 +23,7 @@ export class AxesBatch {
 
   /** Changes the size, m; for the radius see `axesGeometry`. Must be called before `begin`. */
   setShape(length: number, radius: number, segments = 12): void {
-    if (this.made === [length, radius, segments].join()) return;
+    if (this.shapeKey === [length, radius, segments].join()) return;
     this.copies.dispose();
     this.copies = this.make(length, radius, segments);
   }
@@ -55,7 +55,7 @@ export class AxesBatch {
   }
 
   private make(length: number, radius: number, segments: number): CopyBatch {
-    this.made = [length, radius, segments].join();
+    this.shapeKey = [length, radius, segments].join();
     return new CopyBatch(this.parent, axesGeometry(length, radius, segments));
   }
 }

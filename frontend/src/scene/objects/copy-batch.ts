@@ -13,18 +13,18 @@ import {
   type Raycaster,
   type ShaderMaterial,
 } from "three";
-import { behind } from "../materials";
+import { offsetBehind } from "../materials";
 import { slotMaterial, slotTexture, TEXELS_PER_SLOT, writeSlot } from "./slot-material";
 
 const FLOATS_PER_SLOT = TEXELS_PER_SLOT * 4;
 const WHITE = 0xffffff;
 /** Batches with more copies are drawn completely, in the order in which the copies were added. */
-const MOST_ARRANGED = 1000;
+const MAX_SORTED = 1000;
 /** Overlays are drawn after everything but labels. */
 const OVERLAY_ORDER = 5;
 
 /** How copies are drawn relative to other objects. */
-export interface CopyPlace {
+export interface CopyOptions {
   /** Whether the copies cover everything; for shapes that do not hide parts of themselves. */
   readonly isOverlay?: boolean;
   /** Whether lines and marks in the same plane remain visible. */
@@ -58,20 +58,20 @@ export class CopyBatch {
   private count = 0;
   private seeThrough = false;
   /** The contents of the slots of all copies. */
-  private all = new Float32Array(0);
+  private allSlots = new Float32Array(0);
   /** The copies in the slots; null for all in their order. */
-  private arranged: readonly number[] | null = null;
+  private inSlots: readonly number[] | null = null;
   private isUploaded = false;
 
   constructor(
     parent: Object3D,
     private readonly shape: BufferGeometry,
-    private readonly place: CopyPlace = {},
+    private readonly options: CopyOptions = {},
   ) {
     this.slots = { value: slotTexture(0) };
-    this.mesh = new CopyMesh(new BufferGeometry(), slotMaterial(this.slots, place.isSoft), (box) => this.expandBox(box));
-    Object.assign(this.mesh.material, behind(place.isBehind === true));
-    if (place.isOverlay) {
+    this.mesh = new CopyMesh(new BufferGeometry(), slotMaterial(this.slots, options.isSoft), (box) => this.expandBox(box));
+    Object.assign(this.mesh.material, offsetBehind(options.isBehind === true));
+    if (options.isOverlay) {
       this.mesh.material.depthTest = this.mesh.material.depthWrite = false;
       this.mesh.material.transparent = true; // opaque things are drawn before, whatever their order
       this.mesh.renderOrder = OVERLAY_ORDER;
@@ -94,14 +94,14 @@ export class CopyBatch {
   begin(expected: number): void {
     this.count = 0;
     this.seeThrough = false;
-    this.arranged = null;
+    this.inSlots = null;
     if (expected <= this.capacity) return;
     this.capacity = Math.ceil(expected * 1.25);
     this.mesh.geometry.dispose();
     this.mesh.geometry = copies(this.shape, this.capacity);
     this.slots.value.dispose();
     this.slots.value = slotTexture(this.capacity);
-    this.all = new Float32Array(this.texels.length);
+    this.allSlots = new Float32Array(this.texels.length);
   }
 
   /**
@@ -109,7 +109,7 @@ export class CopyBatch {
    * 0xrrggbb.
    */
   add(matrix: Matrix4, grey = 0, alpha = 1, color = WHITE): void {
-    writeSlot(this.all, this.count, matrix, color, grey, alpha);
+    writeSlot(this.allSlots, this.count, matrix, color, grey, alpha);
     this.seeThrough ||= alpha < 1;
     this.count += 1;
   }
@@ -120,7 +120,7 @@ export class CopyBatch {
     this.mesh.boundingBox = null;
     geometry.setDrawRange(0, this.count * (this.shape.index?.count ?? 0));
     this.isUploaded = false;
-    if (this.place.isOverlay || material.transparent === this.seeThrough) return;
+    if (this.options.isOverlay || material.transparent === this.seeThrough) return;
     material.transparent = this.seeThrough;
     material.depthWrite = !this.seeThrough;
     material.needsUpdate = true;
@@ -158,23 +158,23 @@ export class CopyBatch {
 
   /** Fills the slots with the copies in view; transparent ones are sorted from the farthest to the nearest. */
   private arrange(camera: Camera): void {
-    const wanted = this.count > MOST_ARRANGED ? null : this.seen(camera);
-    if (this.isUploaded && areSame(wanted, this.arranged)) return;
-    const { texels, all } = this;
-    if (wanted === null) texels.set(all.subarray(0, this.count * FLOATS_PER_SLOT));
+    const wanted = this.count > MAX_SORTED ? null : this.visibleCopies(camera);
+    if (this.isUploaded && areSame(wanted, this.inSlots)) return;
+    const { texels, allSlots } = this;
+    if (wanted === null) texels.set(allSlots.subarray(0, this.count * FLOATS_PER_SLOT));
     else {
       wanted.forEach((copy, slot) => {
-        texels.set(all.subarray(copy * FLOATS_PER_SLOT, (copy + 1) * FLOATS_PER_SLOT), slot * FLOATS_PER_SLOT);
+        texels.set(allSlots.subarray(copy * FLOATS_PER_SLOT, (copy + 1) * FLOATS_PER_SLOT), slot * FLOATS_PER_SLOT);
       });
     }
     this.mesh.geometry.setDrawRange(0, (wanted?.length ?? this.count) * (this.shape.index?.count ?? 0));
     this.slots.value.needsUpdate = true;
-    this.arranged = wanted;
+    this.inSlots = wanted;
     this.isUploaded = true;
   }
 
   /** Returns the copies in a camera's view, in drawing order. */
-  private seen(camera: Camera): number[] {
+  private visibleCopies(camera: Camera): number[] {
     if (!this.shape.boundingSphere) this.shape.computeBoundingSphere();
     const whole = this.shape.boundingSphere ?? new Sphere();
     const view = new Matrix4().multiplyMatrices(camera.matrixWorldInverse, this.mesh.matrixWorld);
@@ -185,7 +185,7 @@ export class CopyBatch {
       sphere.copy(whole).applyMatrix4(this.matrixOf(copy, matrix).premultiply(view));
       if (frustum.intersectsSphere(sphere)) found.push({ copy, height: sphere.center.z });
     }
-    if (this.seeThrough && !this.place.isOverlay) found.sort((a, b) => a.height - b.height);
+    if (this.seeThrough && !this.options.isOverlay) found.sort((a, b) => a.height - b.height);
     return found.map(({ copy }) => copy);
   }
 
@@ -194,9 +194,9 @@ export class CopyBatch {
   }
 
   private matrixOf(copy: number, matrix: Matrix4): Matrix4 {
-    const { all } = this;
+    const { allSlots } = this;
     const at = copy * FLOATS_PER_SLOT;
-    const row = (i: number): [number, number, number, number] => [all[i] ?? 0, all[i + 1] ?? 0, all[i + 2] ?? 0, all[i + 3] ?? 0];
+    const row = (i: number): [number, number, number, number] => [allSlots[i] ?? 0, allSlots[i + 1] ?? 0, allSlots[i + 2] ?? 0, allSlots[i + 3] ?? 0];
     return matrix.set(...row(at), ...row(at + 4), ...row(at + 8), 0, 0, 0, 1);
   }
 }

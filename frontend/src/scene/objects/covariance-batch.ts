@@ -1,7 +1,7 @@
 import { Matrix4, Quaternion, Vector3, type Box3, type Object3D } from "three";
 import { CopyBatch } from "./copy-batch";
 import { principalAxes } from "./eigen";
-import { ballGeometry, canGeometry, coneGeometry } from "./geometries";
+import { sphereGeometry, cylinderGeometry, coneGeometry } from "./geometries";
 
 /** RViz's CovarianceProperty; null for a part that is not drawn. Colours as 0xrrggbb. */
 export interface CovarianceStyle {
@@ -20,7 +20,7 @@ export interface CovarianceStyle {
 /** The thickness of flat shapes, m. */
 const FLAT = 0.001;
 /** Larger angles are clamped to this, because they look alike. */
-const MOST_RADIANS = (89 * Math.PI) / 180;
+const MAX_RADIANS = (89 * Math.PI) / 180;
 const SEGMENTS = 24;
 
 /**
@@ -37,8 +37,8 @@ export class CovarianceBatch {
   private readonly root = new Matrix4();
 
   constructor(parent: Object3D) {
-    this.balls = new CopyBatch(parent, ballGeometry(SEGMENTS));
-    this.discs = new CopyBatch(parent, canGeometry(SEGMENTS));
+    this.balls = new CopyBatch(parent, sphereGeometry(SEGMENTS));
+    this.discs = new CopyBatch(parent, cylinderGeometry(SEGMENTS));
     this.cones = new CopyBatch(parent, coneGeometry(SEGMENTS));
   }
 
@@ -64,11 +64,11 @@ export class CovarianceBatch {
       const { color, alpha, scale } = style.position;
       this.root.makeTranslation(at).premultiply(frame);
       const shape = inPlane
-        ? spread([c(0, 0), c(0, 1), 0, c(1, 0), c(1, 1), 0, 0, 0, 0])
-        : spread([c(0, 0), c(0, 1), c(0, 2), c(1, 0), c(1, 1), c(1, 2), c(2, 0), c(2, 1), c(2, 2)]);
+        ? deviationsOf([c(0, 0), c(0, 1), 0, c(1, 0), c(1, 1), 0, 0, 0, 0])
+        : deviationsOf([c(0, 0), c(0, 1), c(0, 2), c(1, 0), c(1, 1), c(1, 2), c(2, 0), c(2, 1), c(2, 2)]);
       if (shape) {
         const [x, y, z] = shape.deviations.map((each) => 2 * each * scale) as [number, number, number];
-        const size = this.scale.makeScale(thick(x), thick(y), thick(z));
+        const size = this.scale.makeScale(atLeastFlat(x), atLeastFlat(y), atLeastFlat(z));
         this.balls.add(this.matrix.copy(this.root).multiply(shape.axes).multiply(size), 0, alpha, color);
       }
     }
@@ -98,10 +98,10 @@ export class CovarianceBatch {
   private addTriangle(variance: number, style: NonNullable<CovarianceStyle["orientation"]>): void {
     const { offset, scale, alpha, colors } = style;
     if (!(variance >= 0) || offset <= 0) return;
-    const width = offset * opening(2 * Math.sqrt(variance) * scale);
+    const width = offset * widthOfAngle(2 * Math.sqrt(variance) * scale);
     // The batch's cone has its base at the origin and its tip along x: turn it around.
     this.matrix.makeTranslation(offset, 0, 0).premultiply(this.root);
-    this.cones.add(this.matrix.multiply(this.scale.makeScale(-offset, -thick(width), FLAT)), 0, alpha, colors[2]);
+    this.cones.add(this.matrix.multiply(this.scale.makeScale(-offset, -atLeastFlat(width), FLAT)), 0, alpha, colors[2]);
   }
 
   private addDiscs(
@@ -111,9 +111,9 @@ export class CovarianceBatch {
     const { offset, scale, alpha, colors } = style;
     for (const axis of [0, 1, 2]) {
       const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-      const shape = spread([c(3 + u, 3 + u), c(3 + u, 3 + v), 0, c(3 + v, 3 + u), c(3 + v, 3 + v), 0, 0, 0, 0]);
+      const shape = deviationsOf([c(3 + u, 3 + u), c(3 + u, 3 + v), 0, c(3 + v, 3 + u), c(3 + v, 3 + v), 0, 0, 0, 0]);
       if (!shape || offset <= 0) continue;
-      const [x, y] = shape.deviations.map((each) => thick(offset * opening(2 * each * scale)));
+      const [x, y] = shape.deviations.map((each) => atLeastFlat(offset * widthOfAngle(2 * each * scale)));
       this.matrix.copy(this.root).multiply(DISCS[axis] ?? DISCS[2]).multiply(this.scale.makeTranslation(0, 0, offset));
       this.matrix.multiply(shape.axes).multiply(this.scale.makeScale(x ?? FLAT, y ?? FLAT, FLAT));
       this.discs.add(this.matrix, 0, alpha, colors[axis] ?? colors[2]);
@@ -136,7 +136,7 @@ type Matrix3Rows = Parameters<typeof principalAxes>[0];
 /**
  * Returns standard deviations and their axes; null for rows that are not a covariance, which RViz does not draw either.
  */
-function spread(rows: Matrix3Rows): { deviations: number[]; axes: Matrix4 } | null {
+function deviationsOf(rows: Matrix3Rows): { deviations: number[]; axes: Matrix4 } | null {
   const { values, axes } = principalAxes(rows);
   const most = Math.max(...values.map(Math.abs));
   if (!Number.isFinite(most) || values.some((value) => value < -1e-6 * most)) return null;
@@ -144,10 +144,10 @@ function spread(rows: Matrix3Rows): { deviations: number[]; axes: Matrix4 } | nu
 }
 
 /** Returns the width of an angle at a distance of one metre. */
-function opening(radians: number): number {
-  return 2 * Math.tan(Math.min(radians / 2, MOST_RADIANS));
+function widthOfAngle(radians: number): number {
+  return 2 * Math.tan(Math.min(radians / 2, MAX_RADIANS));
 }
 
-function thick(size: number): number {
+function atLeastFlat(size: number): number {
   return Math.max(size, FLAT);
 }

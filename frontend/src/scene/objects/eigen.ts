@@ -1,7 +1,7 @@
 import { Matrix4 } from "three";
 
 /** The eigenvalues of a symmetric matrix, and its eigenvectors as columns of a rotation. */
-export interface Principal {
+export interface PrincipalAxes {
   values: [number, number, number];
   /** The axes, right-handed. */
   axes: Matrix4;
@@ -19,7 +19,7 @@ const PLANES = [
  *
  * @param m - row by row; only the upper triangle is read.
  */
-export function principalAxes(m: readonly [number, number, number, number, number, number, number, number, number]): Principal {
+export function principalAxes(m: readonly [number, number, number, number, number, number, number, number, number]): PrincipalAxes {
   const a = [
     [m[0], m[1], m[2]],
     [m[1], m[4], m[5]],

@@ -23,7 +23,7 @@ export const smallSphere = new SphereGeometry(1, 16, 10).rotateX(Math.PI / 2);
 const capsules = new Map<number, BufferGeometry>();
 
 /** Returns a capsule of radius 1 along z whose cylinder has this length. */
-export function capsule(length: number): BufferGeometry {
+export function capsuleGeometry(length: number): BufferGeometry {
   let geometry = capsules.get(length);
   if (!geometry) {
     geometry = new CapsuleGeometry(1, length, 12, 32).rotateX(Math.PI / 2);
@@ -64,12 +64,12 @@ export function coneGeometry(segments: number): BufferGeometry {
 }
 
 /** Returns a white sphere with a diameter of one metre. */
-export function ballGeometry(segments: number): BufferGeometry {
+export function sphereGeometry(segments: number): BufferGeometry {
   return paint(new SphereGeometry(0.5, segments, Math.ceil(segments / 2)).rotateX(Math.PI / 2), 1, 1, 1);
 }
 
 /** Returns a closed white cylinder along z, one metre long and one metre in diameter. */
-export function canGeometry(segments: number): BufferGeometry {
+export function cylinderGeometry(segments: number): BufferGeometry {
   return paint(new CylinderGeometry(0.5, 0.5, 1, segments).rotateX(Math.PI / 2), 1, 1, 1);
 }
 

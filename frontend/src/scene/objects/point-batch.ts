@@ -15,7 +15,7 @@ import { pointMaterial, setLook, type PointLook, type PointVariant } from "./poi
 /**
  * Up to this number, points are drawn as quads, which may be larger than the screen but are slow on software renderers.
  */
-const MOST_QUADS = 20_000;
+const MAX_QUADS = 20_000;
 const CORNERS = [-1, -1, 1, -1, 1, 1, -1, 1] as const;
 
 /** Many points with one look in one draw call. */
@@ -43,7 +43,7 @@ export class PointBatch {
   }
 
   setLook(look: PointLook): void {
-    const remake = this.variant !== JSON.stringify(this.wanted(look));
+    const remake = this.variant !== JSON.stringify(this.variantFor(look));
     this.look = look;
     if (remake) this.build();
     else if (this.object) setLook(this.object.material, look);
@@ -54,17 +54,17 @@ export class PointBatch {
     this.clear();
   }
 
-  private wanted(look: PointLook): PointVariant {
+  private variantFor(look: PointLook): PointVariant {
     return {
       style: look.style,
       tinted: this.colors.length > 0,
-      quads: look.style !== "Points" && this.count <= MOST_QUADS,
+      quads: look.style !== "Points" && this.count <= MAX_QUADS,
       seeThrough: look.alpha < OPAQUE_FROM || this.translucent,
     };
   }
 
   private build(): void {
-    const variant = this.wanted(this.look);
+    const variant = this.variantFor(this.look);
     const geometry = variant.quads ? quads(this.positions, this.colors) : points(this.positions, this.colors);
     // three.js would look at every point to sort by distance.
     geometry.boundingSphere = new Sphere();

@@ -28,7 +28,7 @@ export interface PointVariant {
 }
 
 // A point is drawn on a square that faces the camera and contains it. `place` is the position of a fragment on that
-// square, -1 to 1; `hold` is half the side of the square, m. Solid styles trace the ray through the fragment into the
+// square, -1 to 1; `halfSide` is half the side of the square, m. Solid styles trace the ray through the fragment into the
 // point. All other values are constant over a point and therefore flat: interpolation makes software renderers a fifth
 // slower per point.
 const VERTEX = /* glsl */ `
@@ -48,10 +48,10 @@ const VERTEX = /* glsl */ `
   flat out vec4 vColor;
   #ifdef SOLID
     flat out vec3 middle;
-    flat out vec2 hold;
+    flat out vec2 halfSide;
     flat out vec3 side;
   #else
-    vec2 hold;
+    vec2 halfSide;
     vec3 side;
   #endif
 
@@ -70,19 +70,19 @@ const VERTEX = /* glsl */ `
     // Pixels of a metre there, along x and y of the screen.
     vec2 scale = vec2(projectionMatrix[0][0], projectionMatrix[1][1]) * 0.5 * viewport / gl_Position.w;
     #if defined(FIXED)
-      hold = vec2(pixels * 0.5) / scale;
+      halfSide = vec2(pixels * 0.5) / scale;
     #elif defined(SOLID)
-      hold = vec2(length(side) * 0.5 * REACH);
+      halfSide = vec2(length(side) * 0.5 * REACH);
     #else
-      hold = side.xy * 0.5;
+      halfSide = side.xy * 0.5;
     #endif
-    hold = max(hold, vec2(0.5) / scale);
+    halfSide = max(halfSide, vec2(0.5) / scale);
     #ifdef QUADS
       place = corner;
-      gl_Position = projectionMatrix * vec4(eye.xyz + vec3(corner * hold, 0.0), 1.0);
+      gl_Position = projectionMatrix * vec4(eye.xyz + vec3(corner * halfSide, 0.0), 1.0);
     #else
-      gl_PointSize = max(hold.x * scale.x, hold.y * scale.y) * 2.0;
-      hold = vec2(gl_PointSize * 0.5) / scale;
+      gl_PointSize = max(halfSide.x * scale.x, halfSide.y * scale.y) * 2.0;
+      halfSide = vec2(gl_PointSize * 0.5) / scale;
     #endif
   }
 `;
@@ -94,7 +94,7 @@ const FRAGMENT = /* glsl */ `
   flat in vec4 vColor;
   #ifdef SOLID
     flat in vec3 middle;
-    flat in vec2 hold;
+    flat in vec2 halfSide;
     flat in vec3 side;
   #endif
   #ifdef QUADS
@@ -119,7 +119,7 @@ const FRAGMENT = /* glsl */ `
       paint += (length(paint) > 0.5 ? -0.2 : 0.2) * max(edge.x, edge.y);
     #endif
     #ifdef SOLID
-      vec3 through = middle + vec3(at * hold, 0.0);
+      vec3 through = middle + vec3(at * halfSide, 0.0);
       bool parallel = projectionMatrix[3][3] == 1.0;
       mat3 turn = mat3(modelViewMatrix);
       // The ray in the frame of the points, from the middle of this one.

@@ -66,15 +66,15 @@ export function stripsOf(segments: Float32Array, itemSize = 3): Float32Array[] {
 }
 
 function direction(strip: Float32Array, i: number): [number, number, number] {
-  const before = unit(strip, i - 1);
-  const after = unit(strip, i);
+  const before = segmentDirection(strip, i - 1);
+  const after = segmentDirection(strip, i);
   const sum: [number, number, number] = [before[0] + after[0], before[1] + after[1], before[2] + after[2]];
   // Where the line reverses, the mean of both directions is zero.
   return Math.hypot(...sum) > 1e-6 ? sum : after;
 }
 
 /** Returns the unit vector from point `i` to the next; zero beyond the ends and between equal points. */
-function unit(strip: Float32Array, i: number): [number, number, number] {
+function segmentDirection(strip: Float32Array, i: number): [number, number, number] {
   if (i < 0 || (i + 2) * 3 > strip.length) return [0, 0, 0];
   const part = (axis: number): number => (strip[i * 3 + 3 + axis] ?? 0) - (strip[i * 3 + axis] ?? 0);
   const [x, y, z] = [part(0), part(1), part(2)];

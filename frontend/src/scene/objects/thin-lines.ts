@@ -7,7 +7,7 @@ import {
   type Box3,
   type ColorRepresentation,
 } from "three";
-import { areSeenThrough, blend } from "../materials";
+import { areTranslucent, blend } from "../materials";
 import { segmentsOf } from "./ribbons";
 
 /** Lines one pixel wide, unlit; with the same methods as `WideLines`. */
@@ -28,7 +28,7 @@ export class ThinLines {
     this.root.geometry.dispose();
     this.root.geometry = geometry;
     this.show();
-    this.settle();
+    this.updateMaterial();
   }
 
   /** The number of segments. */
@@ -48,8 +48,8 @@ export class ThinLines {
    */
   setStrips(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): void {
     this.setSegments(
-      joined(strips.map((strip) => segmentsOf(strip))),
-      colors && joined(colors.map((each) => segmentsOf(each, 4))),
+      concatenated(strips.map((strip) => segmentsOf(strip))),
+      colors && concatenated(colors.map((each) => segmentsOf(each, 4))),
     );
   }
 
@@ -57,7 +57,7 @@ export class ThinLines {
     this.root.material.color = new Color(color);
     this.root.material.opacity = opacity;
     this.opacity = opacity;
-    this.settle();
+    this.updateMaterial();
   }
 
   /** Expands `box` by all lines, in the parent's frame. */
@@ -75,16 +75,16 @@ export class ThinLines {
     this.root.visible = this.isShown && this.count > 0;
   }
 
-  private settle(): void {
+  private updateMaterial(): void {
     const { material, geometry } = this.root;
     const colors = geometry.attributes["color"];
     material.vertexColors = colors !== undefined;
-    blend(material, areSeenThrough(this.opacity, colors));
+    blend(material, areTranslucent(this.opacity, colors));
   }
 }
 
 /** Concatenates arrays. */
-export function joined(parts: readonly Float32Array[]): Float32Array {
+export function concatenated(parts: readonly Float32Array[]): Float32Array {
   const result = new Float32Array(parts.reduce((sum, part) => sum + part.length, 0));
   let at = 0;
   for (const part of parts) {

@@ -8,7 +8,7 @@ import {
   type Box3,
   type ColorRepresentation,
 } from "three";
-import { areSeenThrough, blend } from "../materials";
+import { areTranslucent, blend } from "../materials";
 import { ribbons, stripsOf } from "./ribbons";
 
 const VERTEX = /* glsl */ `
@@ -75,7 +75,7 @@ export class WideLines {
     this.root.geometry.dispose();
     this.root.geometry = geometry;
     this.root.visible = made.indices.length > 0;
-    this.settle();
+    this.updateMaterial();
   }
 
   /** Sets the style; `width` in m. */
@@ -85,7 +85,7 @@ export class WideLines {
     uniforms["color"] = { value: [r, g, b, opacity] };
     uniforms["width"] = { value: width };
     this.opacity = opacity;
-    this.settle();
+    this.updateMaterial();
   }
 
   /** Expands `box` by the centre lines, in the parent's frame. */
@@ -99,10 +99,10 @@ export class WideLines {
     this.root.material.dispose();
   }
 
-  private settle(): void {
+  private updateMaterial(): void {
     const { material, geometry } = this.root;
     const colors = geometry.attributes["rgba"];
     material.defines = colors ? { COLORED: "" } : {};
-    blend(material, areSeenThrough(this.opacity, colors));
+    blend(material, areTranslucent(this.opacity, colors));
   }
 }

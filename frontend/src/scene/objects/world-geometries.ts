@@ -5,7 +5,7 @@ import type { MeshPart } from "../meshes/mesh-template";
 /**
  * Extrudes polygons (x y x y ...) along z; a polygon within another is a hole, and one within a hole is solid again.
  */
-export function extrusion(outlines: readonly (readonly number[])[], height: number): BufferGeometry {
+export function extrudedPolygons(outlines: readonly (readonly number[])[], height: number): BufferGeometry {
   const polygons = outlines.map((numbers) => {
     return Array.from({ length: Math.floor(numbers.length / 2) }, (_, i) => new Vector2(numbers[2 * i], numbers[2 * i + 1]));
   }).filter((points) => points.length > 2);
@@ -50,7 +50,7 @@ export function submesh(parts: readonly MeshPart[], wanted: Submesh | null): { p
  * @param columns - the number of heights in a row.
  * @param size - x, y, z of the ground, the offset of its centre, and the side length that a texture covers, m.
  */
-export function ground(heights: Float32Array, columns: number, size: readonly number[]): BufferGeometry {
+export function heightmapGeometry(heights: Float32Array, columns: number, size: readonly number[]): BufferGeometry {
   const [x = 1, y = 1, z = 1, dx = 0, dy = 0, dz = 0, tile = 1] = size;
   const rows = Math.floor(heights.length / Math.max(1, columns));
   const geometry = new PlaneGeometry(x, y, Math.max(1, columns - 1), Math.max(1, rows - 1));

@@ -2,7 +2,7 @@ import { Box3, Vector3 } from "three";
 import type { RobotScene } from "../../protocol";
 
 /** A part stands on a plane if it is closer to it than this share of the robot's size. */
-const STANDS = 0.01;
+const STANDING_TOLERANCE = 0.01;
 
 /**
  * Returns the height of a robot's ground in the fixed frame, m: its lowest point if that is below z = 0, as for wheels
@@ -13,15 +13,15 @@ const STANDS = 0.01;
  * @param boxes - the bounding boxes of the visible parts of each link, by its name.
  */
 export function groundOf(robot: Pick<RobotScene, "links" | "joints">, boxes: ReadonlyMap<string, Box3>): number {
-  const whole = around(boxes, [...boxes.keys()]);
+  const whole = union(boxes, [...boxes.keys()]);
   if (whole.isEmpty()) return 0;
-  const margin = STANDS * whole.getSize(new Vector3()).length();
-  const base = around(boxes, baseOf(robot));
+  const margin = STANDING_TOLERANCE * whole.getSize(new Vector3()).length();
+  const base = union(boxes, fixedLinks(robot));
   const stands = !base.isEmpty() && Math.abs(base.min.z) <= margin;
   return stands || whole.min.z >= -margin ? 0 : whole.min.z;
 }
 
-function around(boxes: ReadonlyMap<string, Box3>, links: Iterable<string>): Box3 {
+function union(boxes: ReadonlyMap<string, Box3>, links: Iterable<string>): Box3 {
   const box = new Box3();
   for (const link of links) {
     const each = boxes.get(link);
@@ -31,7 +31,7 @@ function around(boxes: ReadonlyMap<string, Box3>, links: Iterable<string>): Box3
 }
 
 /** Returns the links that are fixed to the root. */
-function baseOf({ links, joints }: Pick<RobotScene, "links" | "joints">): Set<string> {
+function fixedLinks({ links, joints }: Pick<RobotScene, "links" | "joints">): Set<string> {
   const base = new Set(links.filter((link) => link.parent_joint === null).map((link) => link.name));
   const fixed = joints.filter((joint) => joint.kind === "fixed");
   for (let grown = true; grown; ) {

@@ -1,11 +1,11 @@
 import { Group, Matrix4, type Mesh, type Object3D } from "three";
 import type { LinkScene } from "../../protocol";
-import type { Instead } from "../../state/comparison";
+import type { LinkOverride } from "../../state/comparison";
 import type { MaterialPool } from "../materials";
 import type { StandIns } from "../meshes/stand-ins";
 import { LinkTrail } from "./link-trail";
 import type { MovingPiece } from "./moving-meshes";
-import { ShapeDrawing, type ShapePiece, type ShapeTold } from "./shape-drawing";
+import { ShapeDrawing, type ShapePiece, type InspectedShape } from "./shape-drawing";
 import type { SolidKind, Solids } from "./solids";
 
 /** The style of a link, from the display's properties and its own. */
@@ -19,7 +19,7 @@ export interface LinkStyle {
   /** Whether to draw collisions over pale visuals, even if the display does not show them. */
   contrast: boolean;
   /** Replaces the colours of the description. */
-  instead: Instead | null;
+  override: LinkOverride | null;
 }
 
 /** Draws a part of a robot at another pose than that of its description. */
@@ -31,14 +31,14 @@ export interface Displacement {
 }
 
 /** In contrast mode: the factor for the visuals' alpha, and the colour and alpha of collisions. */
-const PALE = 0.3;
-const COLLISION: Instead = { color: [1, 0.55, 0.1] };
+const PALE_FACTOR = 0.3;
+const COLLISION: LinkOverride = { color: [1, 0.55, 0.1] };
 const COLLISION_ALPHA = 0.55;
 
 const scratch = new Matrix4();
 
 /** Computes the pose of a link in the fixed frame; returns false, and leaves `matrix` unchanged, if it is unknown. */
-export type FindLink = (link: LinkScene, matrix: Matrix4) => boolean;
+export type ReadLinkPose = (link: LinkScene, matrix: Matrix4) => boolean;
 
 /** The drawing of a link: its visuals and collisions, in the link's frame. */
 export class LinkDrawing {
@@ -48,9 +48,9 @@ export class LinkDrawing {
   private readonly visualGroup = new Group();
   private readonly collisionGroup = new Group();
   private trail: LinkTrail | null = null;
-  private style: LinkStyle = { enabled: true, visual: true, collision: false, alpha: 1, trail: false, contrast: false, instead: null };
-  private posed = false;
-  private lost = false;
+  private style: LinkStyle = { enabled: true, visual: true, collision: false, alpha: 1, trail: false, contrast: false, override: null };
+  private hasPose = false;
+  private hasLostTransform = false;
 
   constructor(
     readonly link: LinkScene,
@@ -83,7 +83,7 @@ export class LinkDrawing {
 
   /** The pose at which the link is drawn; null until it has a transform. */
   get pose(): Matrix4 | null {
-    return this.posed ? this.root.matrix : null;
+    return this.hasPose ? this.root.matrix : null;
   }
 
   /** The meshes of the parts that are visible now. */
@@ -125,24 +125,24 @@ export class LinkDrawing {
   }
 
   paint(): void {
-    const { contrast, instead } = this.style;
-    const alpha = instead?.firm === true ? Math.sqrt(this.style.alpha) : this.style.alpha;
-    for (const each of this.visuals) each.paint(this.pool, contrast ? alpha * PALE : alpha, this.lost, instead);
+    const { contrast, override } = this.style;
+    const alpha = override?.firm === true ? Math.sqrt(this.style.alpha) : this.style.alpha;
+    for (const each of this.visuals) each.paint(this.pool, contrast ? alpha * PALE_FACTOR : alpha, this.hasLostTransform, override);
     for (const each of this.collisions) {
-      if (contrast) each.paint(this.pool, alpha * COLLISION_ALPHA, this.lost, COLLISION);
-      else each.paint(this.pool, alpha, this.lost, instead);
+      if (contrast) each.paint(this.pool, alpha * COLLISION_ALPHA, this.hasLostTransform, COLLISION);
+      else each.paint(this.pool, alpha, this.hasLostTransform, override);
     }
   }
 
   /** Moves the link to its pose. Like RViz, leaves a link without a transform in place, in white. */
-  place(find: FindLink, isCovered: boolean): void {
+  place(find: ReadLinkPose, isCovered: boolean): void {
     const found = find(this.link, this.root.matrix);
-    this.posed ||= found;
-    this.root.visible = this.posed && !isCovered;
+    this.hasPose ||= found;
+    this.root.visible = this.hasPose && !isCovered;
     this.root.matrixWorldNeedsUpdate = true;
     if (found) this.trail?.follow(this.root.matrix);
-    if (this.posed && found === this.lost) {
-      this.lost = !found;
+    if (this.hasPose && found === this.hasLostTransform) {
+      this.hasLostTransform = !found;
       this.paint();
     }
   }
@@ -159,11 +159,11 @@ export class LinkDrawing {
   }
 
   /** Returns what is drawn, for tests. */
-  tell(): { visuals: ShapeTold[]; collisions: ShapeTold[]; trail: boolean } {
+  inspect(): { visuals: InspectedShape[]; collisions: InspectedShape[]; trail: boolean } {
     const { visible } = this.root;
     return {
-      visuals: visible && this.visualGroup.visible ? this.visuals.map((each) => each.tell()) : [],
-      collisions: visible && this.collisionGroup.visible ? this.collisions.map((each) => each.tell()) : [],
+      visuals: visible && this.visualGroup.visible ? this.visuals.map((each) => each.inspect()) : [],
+      collisions: visible && this.collisionGroup.visible ? this.collisions.map((each) => each.inspect()) : [],
       trail: this.trail !== null,
     };
   }

@@ -11,12 +11,12 @@ import {
   type DataTexture,
   type Object3D,
 } from "three";
-import { TOUCHED } from "../layers";
+import { PICKABLE } from "../layers";
 import type { StandIn } from "../meshes/stand-in";
 import { litSlotMaterial, slotTexture, writeSlot } from "../objects/slot-material";
 
 /** The largest error that is not noticed in a moving frame, in its pixels. */
-const UNSEEN = 1;
+const MAX_ERROR_PX = 1;
 
 /** The moving frame for which stand-ins are drawn. */
 export interface MovingView {
@@ -42,7 +42,7 @@ export class MovingMeshes {
   /**
    * The contents of the buffers: the pieces' stand-ins, the index of the first vertex of each, and the levels drawn.
    */
-  private held: readonly StandIn[] = [];
+  private buffered: readonly StandIn[] = [];
   private firsts: number[] = [];
   private levels: readonly (number | null)[] = [];
   private hidden: Mesh[] = [];
@@ -63,13 +63,13 @@ export class MovingMeshes {
 
   /** Draws pieces instead of meshes, until `end`. */
   begin(pieces: readonly MovingPiece[], meshes: readonly Mesh[], view: MovingView): void {
-    const mesh = this.hold(pieces);
+    const mesh = this.fillBuffers(pieces);
     pieces.forEach(({ matrix, color }, slot) => writeSlot(this.texels, slot, matrix, color));
     this.slots.value.needsUpdate = true;
     this.arrange(mesh.geometry, pieces, view);
     for (const each of meshes) {
       each.layers.disable(0);
-      each.layers.enable(TOUCHED);
+      each.layers.enable(PICKABLE);
     }
     this.hidden = [...meshes];
     this.parent.add(mesh);
@@ -93,25 +93,25 @@ export class MovingMeshes {
   }
 
   /** Fills one buffer with the vertices of all pieces; each vertex has the index of its piece. */
-  private hold(pieces: readonly MovingPiece[]): NonNullable<MovingMeshes["mesh"]> {
-    const { held } = this;
-    if (this.mesh && held.length === pieces.length && pieces.every(({ standIn }, i) => standIn === held[i])) return this.mesh;
-    this.held = pieces.map(({ standIn }) => standIn);
+  private fillBuffers(pieces: readonly MovingPiece[]): NonNullable<MovingMeshes["mesh"]> {
+    const { buffered } = this;
+    if (this.mesh && buffered.length === pieces.length && pieces.every(({ standIn }, i) => standIn === buffered[i])) return this.mesh;
+    this.buffered = pieces.map(({ standIn }) => standIn);
     this.firsts = [];
     this.levels = [];
     let vertices = 0;
-    for (const { positions } of this.held) {
+    for (const { positions } of this.buffered) {
       this.firsts.push(vertices);
       vertices += positions.length / 3;
     }
     const [places, normals, slot] = [new Float32Array(3 * vertices), new Float32Array(3 * vertices), new Float32Array(vertices)];
-    this.held.forEach((each, i) => {
+    this.buffered.forEach((each, i) => {
       const first = this.firsts[i] ?? 0;
       places.set(each.positions, 3 * first);
       normals.set(each.normals, 3 * first);
       slot.fill(i, first, first + each.positions.length / 3);
     });
-    const most = this.held.reduce((sum, { levels }) => sum + (levels[0]?.index.length ?? 0), 0);
+    const most = this.buffered.reduce((sum, { levels }) => sum + (levels[0]?.index.length ?? 0), 0);
     const geometry = new BufferGeometry()
       .setAttribute("position", new BufferAttribute(places, 3))
       .setAttribute("normal", new BufferAttribute(normals, 3))
@@ -154,14 +154,14 @@ export function levelsFor(pieces: readonly MovingPiece[], { camera, height }: Mo
   const isPerspective = elements[11] !== 0;
   const frustum = new Frustum().setFromProjectionMatrix(camera.projectionMatrix);
   const [view, middle, ball] = [new Matrix4(), new Vector3(), new Sphere()];
-  return pieces.map(({ standIn: { ball: [x, y, z, radius], levels }, matrix }) => {
+  return pieces.map(({ standIn: { sphere: [x, y, z, radius], levels }, matrix }) => {
     const scale = matrix.getMaxScaleOnAxis();
     view.multiplyMatrices(camera.matrixWorldInverse, matrix);
     ball.set(middle.set(x, y, z).applyMatrix4(view), radius * scale);
     if (!frustum.intersectsSphere(ball)) return null;
     const depth = isPerspective ? -middle.z - ball.radius : 1;
     // m of the piece in a pixel, where it is nearest
-    const unseen = depth <= 0 ? 0 : (UNSEEN * depth) / (elements[5] * 0.5 * height * scale);
+    const unseen = depth <= 0 ? 0 : (MAX_ERROR_PX * depth) / (elements[5] * 0.5 * height * scale);
     return levels.findLastIndex(({ error }) => error <= unseen);
   });
 }

@@ -1,15 +1,15 @@
 import { Box3, Group, Vector3, type Camera, type Matrix4, type Mesh, type Object3D, type Raycaster } from "three";
 import type { LinkScene, RobotScene } from "../../protocol";
-import type { Instead } from "../../state/comparison";
+import type { LinkOverride } from "../../state/comparison";
 import type { PropertyRows } from "../../state/properties";
-import type { Described, Hit, SelectionBox } from "../picking";
+import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import { describedPose } from "../described-pose";
 import type { Lighting } from "../light";
 import { MaterialPool } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { MovingMeshes, type MovingView, type MovingPiece } from "./moving-meshes";
 import { groundOf } from "./ground";
-import { LinkDrawing, type Displacement, type FindLink } from "./link-drawing";
+import { LinkDrawing, type Displacement, type ReadLinkPose } from "./link-drawing";
 import { RobotExtras } from "./robot-extras";
 import type { ShapeDrawing } from "./shape-drawing";
 import { Solids, type SolidKind } from "./solids";
@@ -17,7 +17,7 @@ import { Solids, type SolidKind } from "./solids";
 /** Called once for each mesh of each link; `error` is null if all of it is drawn. */
 export type MeshReport = (link: string, url: string, error: string | null) => void;
 
-type InsteadOf = (link: string) => Instead | null;
+type InsteadOf = (link: string) => LinkOverride | null;
 
 /** The links and joints of a robot, or of all models of a world. */
 type DrawnLinks = Pick<RobotScene, "links" | "joints">;
@@ -63,7 +63,7 @@ export class RobotDrawing {
     return count;
   }
 
-  get isInPlace(): boolean {
+  get hasPose(): boolean {
     const links = [...this.links.values()];
     const seen = links.filter((link) => link.showsVisuals);
     return (seen.length > 0 ? seen : links).some((link) => link.pose !== null);
@@ -130,12 +130,12 @@ export class RobotDrawing {
   style(rows: PropertyRows, contrast: boolean, lighting: Lighting = "Camera", instead: InsteadOf = () => null): void {
     this.pool.lighting = lighting;
     this.solids.isSoft = this.moving.isSoft = lighting === "Soft";
-    this.pool.renew(() => this.styleLinks(rows, contrast, instead));
+    this.pool.repaint(() => this.styleLinks(rows, contrast, instead));
     this.extras.style(rows);
   }
 
   /** Moves all links to their poses; `isCovered` returns whether another drawing shows a link already. */
-  place(find: FindLink, isCovered: (link: LinkScene) => boolean = () => false): void {
+  place(find: ReadLinkPose, isCovered: (link: LinkScene) => boolean = () => false): void {
     const counts = new Map<SolidKind, number>();
     for (const link of this.links.values()) {
       link.place(find, isCovered(link.link));
@@ -152,12 +152,12 @@ export class RobotDrawing {
   }
 
   /** Chooses the detail of shapes for the camera of the next frame. */
-  look(camera: Camera): void {
-    this.solids.look(camera);
+  chooseDetail(camera: Camera): void {
+    this.solids.chooseDetail(camera);
   }
 
   /** Draws the meshes of a moving robot with fewer triangles, as far as that is not noticed; null restores them. */
-  move(view: MovingView | null): void {
+  simplify(view: MovingView | null): void {
     this.moving.end();
     const { standIns } = this.meshes;
     if (!view || !standIns || this.pool.isLit) return;
@@ -184,7 +184,7 @@ export class RobotDrawing {
   }
 
   /** Returns a link as RViz's Selection panel shows it. */
-  describe(name: string): Described | null {
+  describe(name: string): DescriptionRow | null {
     const link = this.links.get(name);
     return link ? { name: `Link ${name}`, children: describedPose(link.root.matrix) } : null;
   }
@@ -201,8 +201,8 @@ export class RobotDrawing {
   }
 
   /** Returns what is drawn, for tests: the shapes of each link, and the counts of other marks. */
-  tell(): object {
-    const links = [...this.links.values()].map((link) => [link.link.name, link.tell()] as const);
+  inspect(): object {
+    const links = [...this.links.values()].map((link) => [link.link.name, link.inspect()] as const);
     const { size: drawnTogether, smallSpheres } = this.solids;
     return { ...this.extras.counts, drawnTogether, smallSpheres, moving: this.moving.drawn, links: Object.fromEntries(links) };
   }
@@ -236,7 +236,7 @@ export class RobotDrawing {
         alpha: alpha * (typeof linkAlpha === "number" ? linkAlpha : 1),
         trail: child("Show Trail") === true,
         contrast,
-        instead: instead(name),
+        override: instead(name),
       });
     }
   }

@@ -4,7 +4,7 @@ import type { PropertyNode, PropertyRows } from "../../state/properties";
 import { alongX, ArrowBatch } from "../objects/arrow-batch";
 import { AxesBatch } from "../objects/axes-batch";
 import { CopyBatch } from "../objects/copy-batch";
-import { ballGeometry, cubeGeometry } from "../objects/geometries";
+import { sphereGeometry, cubeGeometry } from "../objects/geometries";
 
 const AXES_LENGTH = 0.1;
 const AXES_RADIUS = 0.01;
@@ -37,7 +37,7 @@ export class RobotExtras {
   ) {
     this.axes = new AxesBatch(parent, AXES_LENGTH, AXES_RADIUS);
     this.arrows = new ArrowBatch(parent);
-    this.balls = new CopyBatch(parent, ballGeometry(20));
+    this.balls = new CopyBatch(parent, sphereGeometry(20));
     this.boxes = new CopyBatch(parent, cubeGeometry());
     this.joints = scene.joints.map((joint) => ({ joint, origin: jointOrigin(joint) }));
   }

@@ -1,21 +1,21 @@
 import { Box3, Color, DoubleSide, Group, Matrix4, Mesh, MeshLambertMaterial, type BufferGeometry, type Material, type Texture } from "three";
 import type { Shape } from "../../protocol";
-import type { Instead } from "../../state/comparison";
+import type { LinkOverride } from "../../state/comparison";
 import { strings } from "../../strings";
-import { TOUCHED } from "../layers";
+import { PICKABLE } from "../layers";
 import { errorMaterial, OPAQUE_FROM, RVIZ_RED, type Look, type MaterialPool, type Surface } from "../materials";
 import { quoted } from "../meshes/mesh-error";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import type { StandIn } from "../meshes/stand-in";
 import type { StandIns } from "../meshes/stand-ins";
 import { UNCOLOURED_GREY, type MeshTemplate, type OwnMaterial } from "../meshes/mesh-template";
-import { extrusion, ground, submesh } from "../objects/world-geometries";
+import { extrudedPolygons, heightmapGeometry, submesh } from "../objects/world-geometries";
 import { poseMatrix } from "../pose";
-import { capsule, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
+import { capsuleGeometry, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
 import { solidKind, type SolidKind } from "./solids";
 
 /** The tolerance for equal poses: m, and elements of rotation matrices. */
-const SAME_PLACE = 1e-6;
+const POSE_TOLERANCE = 1e-6;
 
 /** A part of a shape: its mesh, and the materials from the file. */
 interface Part {
@@ -42,7 +42,7 @@ export interface ShapePiece {
 }
 
 /** The result of `ShapeDrawing.inspect`. */
-export interface ShapeTold {
+export interface InspectedShape {
   kind: string;
   bounds: { min: number[]; max: number[] } | null;
   materials: { color: string; opacity: number; textured: boolean; reflects?: true }[];
@@ -56,11 +56,11 @@ export class ShapeDrawing {
   private surface: Surface | null = null;
   private library: MeshLibrary | null = null;
   /** The addresses of the library's textures that this shape uses. */
-  private readonly worn: string[] = [];
+  private readonly usedTextures: string[] = [];
   /** A geometry of its own, which it must dispose of. */
-  private made: BufferGeometry | null = null;
+  private ownGeometry: BufferGeometry | null = null;
   private problem: string | null = null;
-  private together: Solid | null = null;
+  private batched: Solid | null = null;
 
   constructor(readonly shape: Shape) {
     const [x = 0, y = 0, z = 0] = shape.position;
@@ -79,7 +79,7 @@ export class ShapeDrawing {
 
   /** Its entry in a batch, if any; its mesh then serves rays and outlines only. */
   get solid(): Solid | null {
-    return this.together;
+    return this.batched;
   }
 
   get meshes(): readonly Mesh[] {
@@ -97,22 +97,22 @@ export class ShapeDrawing {
     if (kind === "mesh" && url !== null) this.buildMesh(await library.load(url, format ?? ""));
     this.library = library;
     const problems = this.problem === null ? [] : [this.problem];
-    const wear = async (address: string | null): Promise<Texture | null> => {
+    const loadTextureAt = async (address: string | null): Promise<Texture | null> => {
       if (address === null || this.library === null) return null;
       const url = library.files.address(address);
-      this.worn.push(url);
+      this.usedTextures.push(url);
       try {
-        return await library.textures.take(url);
+        return await library.textures.acquire(url);
       } catch {
         problems.push(strings.meshes.missingTextures(quoted([decodeURIComponent(address.split("/").pop() ?? address)])));
         return null;
       }
     };
-    this.texture = await wear(texture);
+    this.texture = await loadTextureAt(texture);
     if (surface) {
       const { roughness, metalness, normal_map, roughness_map, metalness_map, emissive_map, occlusion_map } = surface;
       const maps = [normal_map, roughness_map, metalness_map, emissive_map, occlusion_map] as const;
-      const [normalMap = null, roughnessMap = null, metalnessMap = null, emissiveMap = null, aoMap = null] = await Promise.all(maps.map(wear));
+      const [normalMap = null, roughnessMap = null, metalnessMap = null, emissiveMap = null, aoMap = null] = await Promise.all(maps.map(loadTextureAt));
       const emissive = emissiveMap ? ([1, 1, 1] as const) : ([0, 0, 0] as const);
       this.surface = { roughness, metalness, normalMap, roughnessMap, metalnessMap, emissive, emissiveMap, aoMap };
     }
@@ -125,17 +125,17 @@ export class ShapeDrawing {
    *
    * @param instead - replaces all colours and textures.
    */
-  paint(pool: MaterialPool, alpha: number, lost: boolean, instead: Instead | null = null): void {
+  paint(pool: MaterialPool, alpha: number, lost: boolean, instead: LinkOverride | null = null): void {
     for (const { mesh, own } of this.parts) {
       const materials = own.map((each) => (lost ? errorMaterial : pool.get(this.look(each, alpha, instead))));
       const [only = errorMaterial] = materials;
       mesh.material = materials.length === 1 ? only : materials;
     }
-    this.together = lost || pool.isLit ? null : this.asSolid(instead, alpha);
+    this.batched = lost || pool.isLit ? null : this.asSolid(instead, alpha);
     for (const { mesh } of this.parts) {
-      if (this.together) {
+      if (this.batched) {
         mesh.layers.disable(0);
-        mesh.layers.enable(TOUCHED);
+        mesh.layers.enable(PICKABLE);
       } else mesh.layers.enable(0);
     }
   }
@@ -169,7 +169,7 @@ export class ShapeDrawing {
   isAt(pose: Matrix4): boolean {
     const [x = 0, y = 0, z = 0] = this.shape.position;
     const place = poseMatrix([x, y, z, ...this.shape.quaternion], new Matrix4());
-    return place.elements.every((value, i) => Math.abs(value - (pose.elements[i] ?? NaN)) < SAME_PLACE);
+    return place.elements.every((value, i) => Math.abs(value - (pose.elements[i] ?? NaN)) < POSE_TOLERANCE);
   }
 
   /** Draws the shape at another pose in its link; null restores that of the description. */
@@ -178,12 +178,12 @@ export class ShapeDrawing {
     else this.root.updateMatrix();
     this.root.matrixWorldNeedsUpdate = true;
     const [part] = this.parts;
-    if (!this.together || !part) return;
-    this.together = { ...this.together, matrix: new Matrix4().multiplyMatrices(this.root.matrix, part.mesh.matrix) };
+    if (!this.batched || !part) return;
+    this.batched = { ...this.batched, matrix: new Matrix4().multiplyMatrices(this.root.matrix, part.mesh.matrix) };
   }
 
   /** Returns what is drawn, for tests: bounds in the fixed frame, and colour, opacity and texture of each material. */
-  tell(): ShapeTold {
+  inspect(): InspectedShape {
     const box = new Box3();
     for (const { mesh } of this.parts) {
       mesh.updateWorldMatrix(true, false);
@@ -203,9 +203,9 @@ export class ShapeDrawing {
   }
 
   dispose(): void {
-    for (const url of this.worn) this.library?.textures.giveBack(url);
+    for (const url of this.usedTextures) this.library?.textures.release(url);
     this.library = null;
-    this.made?.dispose();
+    this.ownGeometry?.dispose();
   }
 
   private buildPrimitive(): void {
@@ -218,7 +218,7 @@ export class ShapeDrawing {
         this.addPart(unitCylinder, [null]).scale.set(a, a, b);
         break;
       case "capsule":
-        this.addPart(capsule(a > 0 ? b / a : 0), [null]).scale.setScalar(a);
+        this.addPart(capsuleGeometry(a > 0 ? b / a : 0), [null]).scale.setScalar(a);
         break;
       case "sphere":
         this.addPart(unitSphere, [null]).scale.setScalar(a);
@@ -233,10 +233,10 @@ export class ShapeDrawing {
         this.addPart(unitPlane, [null]).scale.set(a, b, 1);
         break;
       case "polyline":
-        this.buildPart(extrusion(this.shape.outlines, a));
+        this.buildPart(extrudedPolygons(this.shape.outlines, a));
         break;
       case "heightmap":
-        if (this.shape.heights) this.buildPart(ground(this.shape.heights, this.shape.columns, this.shape.size));
+        if (this.shape.heights) this.buildPart(heightmapGeometry(this.shape.heights, this.shape.columns, this.shape.size));
         break;
       case "mesh":
         break;
@@ -247,7 +247,7 @@ export class ShapeDrawing {
   /** Builds a part with a geometry that no other shape shares. */
   private buildPart(geometry: BufferGeometry): void {
     this.addPart(geometry, [null]);
-    this.made = geometry;
+    this.ownGeometry = geometry;
     this.freeze();
   }
 
@@ -270,7 +270,7 @@ export class ShapeDrawing {
     return mesh;
   }
 
-  private asSolid(instead: Instead | null, alpha: number): Solid | null {
+  private asSolid(instead: LinkOverride | null, alpha: number): Solid | null {
     const kind = solidKind(this.shape.kind);
     const [part] = this.parts;
     const look = this.look(null, alpha, instead);
@@ -294,7 +294,7 @@ export class ShapeDrawing {
    * one, a primitive or STL is RViz's red, and another mesh the grey that RViz's mesh reader sets. Only the URDF sets
    * the opacity of a part: RViz does not read it from mesh files, where exporters often write it wrongly.
    */
-  private look(own: OwnMaterial | null, alpha: number, instead: Instead | null): Look {
+  private look(own: OwnMaterial | null, alpha: number, instead: LinkOverride | null): Look {
     if (instead) return { color: instead.color, map: null, vertexColors: false, alpha, doubleSided: true, behind: instead.behind === true };
     const { kind, repaints } = this.shape;
     const doubleSided = kind === "mesh";

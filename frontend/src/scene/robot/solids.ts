@@ -16,7 +16,7 @@ export function solidKind(kind: string): SolidKind | null {
 }
 
 /** Up to this share of the height of the image, a sphere looks round with few vertices. */
-const SMALL = 0.06;
+const SMALL_SHARE = 0.06;
 
 /** A sphere to draw, as the matrix that maps the unit sphere to it. */
 interface Sphere {
@@ -27,14 +27,14 @@ interface Sphere {
 
 /**
  * Draws opaque boxes, cylinders, cones, spheres and planes. Call `begin`, `add` and `end` as with `CopyBatch`, and
- * `look` before each frame. Spheres have ten times the vertices of the others, which without a GPU took two fifths of
+ * `chooseDetail` before each frame. Spheres have ten times the vertices of the others, which without a GPU took two fifths of
  * the time of a frame: those that look small are drawn with fewer.
  */
 export class Solids {
   private readonly batches: ReadonlyMap<SolidKind, CopyBatch>;
   private readonly small: CopyBatch;
   private spheres: Sphere[] = [];
-  private isOld = false;
+  private isStale = false;
   private readonly softness = { value: false };
 
   constructor(parent: Object3D) {
@@ -77,26 +77,26 @@ export class Solids {
 
   end(): void {
     for (const [kind, batch] of this.batches) if (kind !== "sphere") batch.end();
-    this.isOld = true;
+    this.isStale = true;
   }
 
   /** Chooses the detail of the spheres for a camera in the parent's frame. */
-  look(camera: Camera): void {
-    let changed = this.isOld;
+  chooseDetail(camera: Camera): void {
+    let changed = this.isStale;
     for (const sphere of this.spheres) {
-      const isSmall = shareOf(sphere.matrix, camera) < SMALL;
+      const isSmall = shareOf(sphere.matrix, camera) < SMALL_SHARE;
       changed ||= isSmall !== sphere.isSmall;
       sphere.isSmall = isSmall;
     }
-    this.isOld = false;
-    if (changed) this.deal();
+    this.isStale = false;
+    if (changed) this.fillSphereBatches();
   }
 
   dispose(): void {
     for (const batch of [...this.batches.values(), this.small]) batch.dispose();
   }
 
-  private deal(): void {
+  private fillSphereBatches(): void {
     const small = this.spheres.filter((sphere) => sphere.isSmall);
     const large = this.spheres.filter((sphere) => !sphere.isSmall);
     for (const [batch, spheres] of [[this.small, small], [this.batches.get("sphere"), large]] as const) {

@@ -4,7 +4,7 @@ import type { Vector } from "../../state/views/vector";
 /** The number of sample points of a surface. */
 const POINTS = 320;
 /** To frame a robot, every n-th sample is enough. */
-const FEWER = 4;
+const FRAMING_STRIDE = 4;
 /** The steps of the R2 sequence, which fills a triangle evenly. */
 const [STEP_A, STEP_B] = [0.7548776662, 0.5698402909];
 
@@ -16,12 +16,12 @@ export interface SurfaceSamples {
   readonly area: number;
 }
 
-const known = new WeakMap<BufferGeometry, SurfaceSamples>();
+const cache = new WeakMap<BufferGeometry, SurfaceSamples>();
 
 /** Returns the samples of a geometry in its own frame; they are computed once. */
 export function samplesOf(geometry: BufferGeometry): SurfaceSamples {
-  let samples = known.get(geometry);
-  if (!samples) known.set(geometry, (samples = spread(geometry)));
+  let samples = cache.get(geometry);
+  if (!samples) cache.set(geometry, (samples = sampleSurface(geometry)));
   return samples;
 }
 
@@ -29,11 +29,11 @@ export function samplesOf(geometry: BufferGeometry): SurfaceSamples {
 export function pointsOn({ geometry, matrixWorld }: Mesh): Vector[] {
   const { points } = samplesOf(geometry);
   const found: Vector[] = [];
-  for (let i = 0; i < points.length; i += 3 * FEWER) found.push(new Vector3().fromArray(points, i).applyMatrix4(matrixWorld).toArray());
+  for (let i = 0; i < points.length; i += 3 * FRAMING_STRIDE) found.push(new Vector3().fromArray(points, i).applyMatrix4(matrixWorld).toArray());
   return found;
 }
 
-function spread(geometry: BufferGeometry): SurfaceSamples {
+function sampleSurface(geometry: BufferGeometry): SurfaceSamples {
   const { index } = geometry;
   const positions = geometry.getAttribute("position");
   const count = Math.floor((index ?? positions).count / 3);

@@ -17,22 +17,22 @@ const LABEL_PX = 20;
 export class MeasureTool implements SceneTool {
   private readonly line = new ThinLines();
   private readonly label = new LabelBatch();
-  private readonly forget: () => void;
+  private readonly stopListening: () => void;
   private start: Vector | null = null;
   private end: Vector | null = null;
-  private started = false;
+  private isMeasuring = false;
 
   constructor(private readonly context: ToolContext) {
     context.stage.viewport.scene.add(this.line.root, this.label.root);
     // Draw the line and its label over the objects between its ends, which may be on two sides of a body.
     this.line.root.material.depthTest = false;
     this.line.root.renderOrder = 1;
-    this.forget = context.session.view.changed.on(() => this.placeLabel());
+    this.stopListening = context.session.view.changed.on(() => this.placeLabel());
     this.settingsChanged();
   }
 
   activate(): void {
-    this.started = false;
+    this.isMeasuring = false;
     this.context.setCursor("default");
     this.showLength();
   }
@@ -41,8 +41,8 @@ export class MeasureTool implements SceneTool {
     if (event.type === "wheel" || event.type === "leave") return;
     const point = this.context.stage.picker.pointAt(event.x, event.y);
     this.context.setCursor(point ? "crosshair" : "default");
-    if (this.started && point) this.draw(point);
-    if (event.type === "up" && event.button === "left") this.released(point, event.click);
+    if (this.isMeasuring && point) this.draw(point);
+    if (event.type === "up" && event.button === "left") this.onRelease(point, event.click);
     if (event.type === "up" && event.button === "right") this.clear();
     this.showLength();
   }
@@ -57,7 +57,7 @@ export class MeasureTool implements SceneTool {
   }
 
   dispose(): void {
-    this.forget();
+    this.stopListening();
     this.line.dispose();
     this.label.dispose();
     this.context.stage.loop.invalidate();
@@ -69,15 +69,15 @@ export class MeasureTool implements SceneTool {
   }
 
   /** Handles the release of the button. A drag that ends over empty space is meant for the camera. */
-  private released(point: Vector | null, isClick: boolean): void {
-    if (point) this.clicked(point);
-    if (point || isClick) this.context.tell(point ? "" : strings.tools.hints.nothingThere);
+  private onRelease(point: Vector | null, isClick: boolean): void {
+    if (point) this.addPoint(point);
+    if (point || isClick) this.context.showNotice(point ? "" : strings.tools.hints.nothingThere);
   }
 
-  private clicked(point: Vector): void {
-    if (this.started) this.started = false;
+  private addPoint(point: Vector): void {
+    if (this.isMeasuring) this.isMeasuring = false;
     else {
-      this.started = true;
+      this.isMeasuring = true;
       this.start = point;
       this.draw(point);
     }
@@ -92,7 +92,7 @@ export class MeasureTool implements SceneTool {
   }
 
   private clear(): void {
-    this.started = false;
+    this.isMeasuring = false;
     this.start = this.end = null;
     this.line.setSegments(new Float32Array(0));
     this.placeLabel();

@@ -1,6 +1,6 @@
 import type { Vector } from "../../state/views/vector";
 
 /** Returns a point as in RViz's status line: `[1.2,0,-3.4]`, m. */
-export function shown(point: Vector): string {
+export function pointText(point: Vector): string {
   return `[${point.map((each) => String(Number(each.toPrecision(3)))).join(",")}]`;
 }

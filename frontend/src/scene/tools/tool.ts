@@ -34,7 +34,7 @@ export interface ToolContext {
   readonly state: ToolState | null;
   setHint(text: string): void;
   /** Shows over the scene why the tool did not do what was requested; an empty text hides the notice. */
-  tell(text: string): void;
+  showNotice(text: string): void;
   /** Sets a CSS cursor. */
   setCursor(cursor: string): void;
   /** Ends the tool's task: the default tool becomes active. */
@@ -52,7 +52,7 @@ export interface SceneTool {
   deactivate?(): void;
   pointer(event: ToolEvent): void;
   /** Handles a key; returns true if the tool uses it. */
-  key?(key: string): boolean;
+  pressKey?(key: string): boolean;
   settingsChanged?(): void;
   /** Returns the tool's state, for tests. */
   inspect?(): object;

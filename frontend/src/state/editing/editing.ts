@@ -19,8 +19,8 @@ export type HandleFrame = "parent" | "own";
 
 const SNAPPING = "linkwright.editing-snapping";
 /** The preview is requested this time after the last change, ms. */
-const ASKS_AFTER = 120;
-const NOTHING = 1e-9;
+const PREVIEW_DELAY_MS = 120;
+const MIN_CHANGE = 1e-9;
 
 /** Editing of a robot: the editable parts, the requested values, and the resulting changes of the files. */
 export class EditingState {
@@ -31,7 +31,7 @@ export class EditingState {
   /** Editing started or ended. */
   readonly activeChanged = new Signal();
   /** The user asked to edit a link. */
-  readonly wanted = new Signal();
+  readonly editRequested = new Signal();
   readonly snapping: Snapping;
   preview: EditPreview | null = null;
   /** Why nothing was written; null after success. */
@@ -41,13 +41,13 @@ export class EditingState {
   canUndo = false;
   canRedo = false;
   private link: { display: string; link: string } | null = null;
-  private known: EditableParts | null = null;
+  private editable: EditableParts | null = null;
   private part: EditablePart | null = null;
-  private asked: Draft | null = null;
+  private currentDraft: Draft | null = null;
   /** Whether the draft was written, but the resulting robot has not arrived yet. */
   private isWritten = false;
-  private number = 0;
-  private together = false;
+  private previewNumber = 0;
+  private changesAll = false;
   private timer: ReturnType<typeof setTimeout> | undefined;
   private holders = 0;
   private handleMode: HandleMode = "translate";
@@ -58,16 +58,16 @@ export class EditingState {
     storage: TextStorage,
   ) {
     this.snapping = new Snapping(storage, SNAPPING, { on: false, length: 0.01 });
-    connection.on("editable_parts", (message) => this.take(message));
+    connection.on("editable_parts", (message) => this.setParts(message));
     connection.on("edit_preview", (message) => {
-      if (message.number !== this.number) return;
+      if (message.number !== this.previewNumber) return;
       this.preview = message;
       this.changed.emit();
     });
     connection.on("edit_written", ({ files, refusal }) => {
       this.refusal = refusal;
       this.written = files;
-      this.isWritten = refusal === null && this.asked !== null;
+      this.isWritten = refusal === null && this.currentDraft !== null;
       this.preview = null;
       this.changed.emit();
       this.draftChanged.emit();
@@ -77,7 +77,7 @@ export class EditingState {
       this.changed.emit();
     });
     connection.on("description_changed", ({ display }) => {
-      if (this.active && display === this.link?.display) this.ask();
+      if (this.active && display === this.link?.display) this.requestParts();
     });
     connection.on("robot_scene", ({ display }) => {
       if (display === this.link?.display && this.isWritten) this.reset();
@@ -90,12 +90,12 @@ export class EditingState {
   }
 
   get parts(): readonly EditablePart[] {
-    return this.known?.parts ?? [];
+    return this.editable?.parts ?? [];
   }
 
   /** Why nothing can be edited; empty if editing is possible. */
   get whyNot(): string {
-    return this.known?.why_not ?? "";
+    return this.editable?.why_not ?? "";
   }
 
   get current(): { display: string; link: string } | null {
@@ -108,17 +108,17 @@ export class EditingState {
 
   /** The draft; null if nothing was moved. */
   get draft(): Draft | null {
-    return this.asked;
+    return this.currentDraft;
   }
 
   /** Whether the draft is neither written nor discarded. */
   get isOpen(): boolean {
-    return this.asked !== null && !this.isWritten;
+    return this.currentDraft !== null && !this.isWritten;
   }
 
   /** Whether the edit may change all elements that result from the same text. */
-  get isTogether(): boolean {
-    return this.together;
+  get isChangeOfAll(): boolean {
+    return this.changesAll;
   }
 
   get mode(): HandleMode {
@@ -145,7 +145,7 @@ export class EditingState {
   hold(): () => void {
     this.holders += 1;
     this.activeChanged.emit();
-    this.ask();
+    this.requestParts();
     this.draftChanged.emit();
     let done = false;
     return () => {
@@ -160,10 +160,10 @@ export class EditingState {
   follow(link: { display: string; link: string } | null): void {
     if (link?.display === this.link?.display && link?.link === this.link?.link) return;
     this.link = link;
-    this.known = this.part = null;
+    this.editable = this.part = null;
     this.written = [];
     this.reset();
-    this.ask();
+    this.requestParts();
   }
 
   choose(part: EditablePart): void {
@@ -178,18 +178,18 @@ export class EditingState {
     const { part } = this;
     if (!part || this.whyNot !== "") return;
     const stays = equal(draft.xyz, part.xyz) && equal(draft.rpy, part.rpy);
-    this.asked = stays ? null : draft;
-    this.isWritten = this.together = false;
+    this.currentDraft = stays ? null : draft;
+    this.isWritten = this.changesAll = false;
     this.written = [];
-    this.forget();
+    this.cancelPreview();
     this.draftChanged.emit();
-    if (this.asked) this.timer = setTimeout(() => this.askPreview(), ASKS_AFTER);
+    if (this.currentDraft) this.timer = setTimeout(() => this.requestPreview(), PREVIEW_DELAY_MS);
   }
 
   /** Requests the same edit for all elements that result from the same text. */
   changeAll(): void {
-    this.together = true;
-    this.askPreview();
+    this.changesAll = true;
+    this.requestPreview();
     this.changed.emit();
   }
 
@@ -210,32 +210,32 @@ export class EditingState {
 
   /** Discards the draft. */
   reset(): void {
-    this.asked = null;
-    this.isWritten = this.together = false;
-    this.forget();
+    this.currentDraft = null;
+    this.isWritten = this.changesAll = false;
+    this.cancelPreview();
     this.draftChanged.emit();
   }
 
-  private forget(): void {
+  private cancelPreview(): void {
     clearTimeout(this.timer);
-    this.number += 1;
+    this.previewNumber += 1;
     this.preview = this.refusal = null;
     this.changed.emit();
   }
 
-  private ask(): void {
+  private requestParts(): void {
     if (this.active && this.link) this.connection.send({ type: "ask_editable_parts", ...this.link });
   }
 
-  private askPreview(): void {
-    const { part, asked, link } = this;
-    if (!part || !asked || !link) return;
-    this.number += 1;
+  private requestPreview(): void {
+    const { part, currentDraft, link } = this;
+    if (!part || !currentDraft || !link) return;
+    this.previewNumber += 1;
     this.preview = null;
     const { name, index } = part;
-    const xyz = equal(asked.xyz, part.xyz) ? null : [...asked.xyz];
-    const rpy = equal(asked.rpy, part.rpy) ? null : [...asked.rpy];
-    const { number, together } = this;
+    const xyz = equal(currentDraft.xyz, part.xyz) ? null : [...currentDraft.xyz];
+    const rpy = equal(currentDraft.rpy, part.rpy) ? null : [...currentDraft.rpy];
+    const { previewNumber: number, changesAll: together } = this;
     this.connection.send({ type: "preview_edit", number, display: link.display, part: part.part, name, index, xyz, rpy, together });
   }
 
@@ -243,14 +243,14 @@ export class EditingState {
    * Handles new parts. The draft stays if the part's own values are unchanged, which means that another part of the
    * robot has changed.
    */
-  private take(message: EditableParts): void {
+  private setParts(message: EditableParts): void {
     if (message.display !== this.link?.display || message.link !== this.link.link) return;
-    this.known = message;
+    this.editable = message;
     const before = this.part;
     this.part = message.parts.find((part) => isSame(part, before)) ?? message.parts[0] ?? null;
     const stays = before && this.part && isSame(before, this.part) && equal(before.xyz, this.part.xyz) && equal(before.rpy, this.part.rpy);
     if (!stays) this.reset();
-    else if (this.isOpen) this.askPreview();
+    else if (this.isOpen) this.requestPreview();
     this.changed.emit();
     this.draftChanged.emit();
   }
@@ -261,5 +261,5 @@ function isSame(one: EditablePart, other: EditablePart | null): boolean {
 }
 
 function equal(some: readonly number[], others: readonly number[]): boolean {
-  return some.length === others.length && some.every((value, i) => Math.abs(value - (others[i] ?? NaN)) < NOTHING);
+  return some.length === others.length && some.every((value, i) => Math.abs(value - (others[i] ?? NaN)) < MIN_CHANGE);
 }

@@ -21,18 +21,18 @@ export function nearestRpy([x, y, z, w]: Quaternion, near: readonly number[]): [
   const pitch = Math.atan2(-2 * (x * z - y * w), level);
   if (level < GIMBAL_LOCK) {
     const turn = Math.atan2(-2 * (x * y - z * w), 1 - 2 * (x * x + z * z));
-    return [nearRoll, toward(pitch, nearPitch), toward(pitch > 0 ? turn + nearRoll : turn - nearRoll, nearYaw)];
+    return [nearRoll, nearestAngle(pitch, nearPitch), nearestAngle(pitch > 0 ? turn + nearRoll : turn - nearRoll, nearYaw)];
   }
   const roll = Math.atan2(2 * (y * z + x * w), 1 - 2 * (x * x + y * y));
   const yaw = Math.atan2(across, along);
-  const turned = ([r, p, h]: readonly [number, number, number]): [number, number, number] => [toward(r, nearRoll), toward(p, nearPitch), toward(h, nearYaw)];
+  const turned = ([r, p, h]: readonly [number, number, number]): [number, number, number] => [nearestAngle(r, nearRoll), nearestAngle(p, nearPitch), nearestAngle(h, nearYaw)];
   const [first, second] = [turned([roll, pitch, yaw]), turned([roll + Math.PI, Math.PI - pitch, yaw + Math.PI])];
   const far = (rpy: readonly number[]): number => rpy.reduce((sum, angle, i) => sum + Math.abs(angle - (near[i] ?? 0)), 0);
   return far(second) < far(first) - 1e-9 ? second : first;
 }
 
 /** Returns the equivalent angle within half a turn of another. */
-function toward(angle: number, near: number): number {
+function nearestAngle(angle: number, near: number): number {
   const turned = angle - near;
   return near + Math.atan2(Math.sin(turned), Math.cos(turned));
 }

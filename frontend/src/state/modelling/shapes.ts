@@ -1,5 +1,5 @@
 import type { AddEntity, EntityChange, WorldEntity } from "../../protocol";
-import { snapped } from "./snapping";
+import { snap } from "./snapping";
 
 export type NewKind = AddEntity["shape"];
 export type Shape = NonNullable<WorldEntity["shape"]>;
@@ -13,7 +13,7 @@ export type Change = Pick<EntityChange, "name"> & Partial<EntityChange>;
 const THICKNESS = 0.1;
 const HEIGHT = 1;
 /** The minimum size, m. */
-export const LEAST_SIZE = 0.001;
+export const MIN_SIZE = 0.001;
 
 /** The sizes of new entities, m, as on the server: x y z; radius and length of a cylinder; radius of a sphere. */
 const SIZES: Readonly<Partial<Record<NewKind, readonly number[]>>> = {
@@ -57,30 +57,30 @@ function restingHeight(shape: Shape, size: readonly number[]): number {
 /** Scales a size along x, y and z; a round dimension follows its axis that is scaled most. */
 export function scaledSize(shape: Shape, size: readonly number[], scale: readonly number[], step: number): number[] {
   const [sx = 1, sy = 1, sz = 1] = scale;
-  const factors = shape === "sphere" ? [strongest(sx, sy, sz)] : shape === "cylinder" ? [strongest(sx, sy), sz] : [sx, sy, sz];
+  const factors = shape === "sphere" ? [largestFactor(sx, sy, sz)] : shape === "cylinder" ? [largestFactor(sx, sy), sz] : [sx, sy, sz];
   // Dimensions that are not scaled may remain off the grid.
   return size.map((length, i) => {
     const factor = Math.abs(factors[i] ?? 1);
-    return factor === 1 ? length : Math.max(step || LEAST_SIZE, snapped(length * factor, step));
+    return factor === 1 ? length : Math.max(step || MIN_SIZE, snap(length * factor, step));
   });
 }
 
 /** Returns the change that resizes an entity; the bottom of an entity that is not tilted stays at its height. */
-export function resized({ name, shape, size: before, pose }: WorldEntity, size: readonly number[]): Change {
+export function resizeChange({ name, shape, size: before, pose }: WorldEntity, size: readonly number[]): Change {
   const [x = 0, y = 0, z = 0, roll = 0, pitch = 0, yaw = 0] = pose;
   const change = { name, size: [...size] };
   if (shape === null || roll !== 0 || pitch !== 0) return change;
   const rise = restingHeight(shape, size) - restingHeight(shape, before);
-  return rise === 0 ? change : { ...change, pose: [x, y, tidy(z + rise), roll, pitch, yaw] };
+  return rise === 0 ? change : { ...change, pose: [x, y, roundNoise(z + rise), roll, pitch, yaw] };
 }
 
 /** Rounds away floating-point errors. */
-export function tidy(value: number): number {
+export function roundNoise(value: number): number {
   return Math.round(value * 1e9) / 1e9;
 }
 
 /** Returns the factors by which to stretch the drawing of a shape along x, y and z for another size. */
-export function stretch(shape: Shape, before: readonly number[], after: readonly number[]): [number, number, number] {
+export function stretchFactors(shape: Shape, before: readonly number[], after: readonly number[]): [number, number, number] {
   const by = (i: number): number => ((before[i] ?? 0) > 0 ? (after[i] ?? 0) / (before[i] ?? 1) : 1);
   if (shape === "sphere") return [by(0), by(0), by(0)];
   return shape === "cylinder" ? [by(0), by(0), by(1)] : [by(0), by(1), by(2)];
@@ -90,6 +90,6 @@ export function isShape(kind: NewKind): kind is Shape {
   return kind === "wall" || kind in SIZES;
 }
 
-function strongest(...factors: number[]): number {
+function largestFactor(...factors: number[]): number {
   return factors.reduce((best, each) => (Math.abs(Math.log(Math.abs(each))) > Math.abs(Math.log(Math.abs(best))) ? each : best), 1);
 }

@@ -9,7 +9,7 @@ export const LENGTH_STEPS = [0.01, 0.05, 0.1, 0.25, 0.5, 1] as const;
 export const ANGLE_STEPS = [1, 5, 15, 30, 45, 90] as const;
 
 /** Rounds to the nearest multiple of a step, without floating-point noise. */
-export function snapped(value: number, step: number): number {
+export function snap(value: number, step: number): number {
   return step > 0 ? Number((Math.round(value / step) * step).toPrecision(12)) : value;
 }
 
@@ -38,7 +38,7 @@ export class Snapping {
 
   set enabled(on: boolean) {
     this.on = on;
-    this.keep();
+    this.store();
   }
 
   /** The step of the grid, m. */
@@ -48,7 +48,7 @@ export class Snapping {
 
   set metres(length: number) {
     this.length = length;
-    this.keep();
+    this.store();
   }
 
   get degrees(): number {
@@ -57,7 +57,7 @@ export class Snapping {
 
   set degrees(angle: number) {
     this.angle = angle;
-    this.keep();
+    this.store();
   }
 
   /** Returns the current steps, m and rad, 0 without a grid; `inverted` while Ctrl is held. */
@@ -66,7 +66,7 @@ export class Snapping {
     return { length: on ? this.length : 0, angle: on ? this.angle * DEGREE : 0 };
   }
 
-  private keep(): void {
+  private store(): void {
     this.storage.setItem(this.key, `${this.on ? "on" : "off"} ${this.length} ${this.angle}`);
     this.changed.emit();
   }

@@ -57,11 +57,11 @@ interface Vertex {
  * neighbours, and vertical positions are as close to those of the neighbours as the order permits. Boxes without links
  * are placed in rows below.
  */
-export function layered(boxes: readonly Box[], links: readonly Link[]): Layout {
+export function layOutLayers(boxes: readonly Box[], links: readonly Link[]): Layout {
   const known = new Map(boxes.map((box) => [box.id, box]));
   const proper = links.filter(({ from, to }) => from !== to && known.has(from) && known.has(to));
   const linked = new Set(proper.flatMap(({ from, to }) => [from, to]));
-  const turned = cycleClosers(boxes, proper);
+  const turned = cycleClosingLinks(boxes, proper);
   const forward = proper.map((link) => (turned.has(link) ? { from: link.to, to: link.from } : link));
   const layerOf = layersOf(boxes.filter(({ id }) => linked.has(id)), forward);
   const vertices = new Map<string, Vertex>();
@@ -73,10 +73,10 @@ export function layered(boxes: readonly Box[], links: readonly Link[]): Layout {
     return vertex;
   };
   for (const box of boxes) if (linked.has(box.id)) add(box, layerOf.get(box.id) ?? 0);
-  const chains = forward.map(({ from, to }) => chain(vertices, from, to, add));
-  order(layers);
-  place(layers);
-  const width = spread(layers);
+  const chains = forward.map(({ from, to }) => connectLayers(vertices, from, to, add));
+  orderLayers(layers);
+  placeVertically(layers);
+  const width = placeLayers(layers);
   const result: Layout = { boxes: new Map(), routes: [], width, height: 0 };
   for (const [id, { box, x, y }] of vertices) if (box) result.boxes.set(id, { ...box, id, x, y });
   const pairs = new Set(proper.map(({ from, to }) => `${from}\n${to}`));
@@ -86,12 +86,12 @@ export function layered(boxes: readonly Box[], links: readonly Link[]): Layout {
     result.routes.push({ from: link.from, to: link.to, points: turned.has(link) ? points.reverse() : points });
   });
   shiftToOrigin(result);
-  placeAlone(boxes.filter(({ id }) => !linked.has(id)), result);
+  placeUnlinked(boxes.filter(({ id }) => !linked.has(id)), result);
   return result;
 }
 
 /** Returns the links that close a cycle, by a depth-first search. */
-function cycleClosers(boxes: readonly Box[], links: readonly Link[]): Set<Link> {
+function cycleClosingLinks(boxes: readonly Box[], links: readonly Link[]): Set<Link> {
   const outgoing = new Map<string, Link[]>();
   const incoming = new Set(links.map(({ to }) => to));
   for (const link of links) outgoing.set(link.from, [...(outgoing.get(link.from) ?? []), link]);
@@ -139,7 +139,7 @@ function layersOf(boxes: readonly Box[], links: readonly Link[]): Map<string, nu
   return layer;
 }
 
-function chain(
+function connectLayers(
   vertices: ReadonlyMap<string, Vertex>,
   from: string,
   to: string,
@@ -163,7 +163,7 @@ function chain(
  * Orders each layer by the mean position of the neighbours, in both directions, and keeps the order with the fewest
  * crossings.
  */
-function order(layers: Vertex[][]): void {
+function orderLayers(layers: Vertex[][]): void {
   let best = layers.map((layer) => [...layer]);
   let fewest = crossings(layers);
   for (let sweep = 0; sweep < ORDER_SWEEPS && fewest > 0; sweep++) {
@@ -206,7 +206,7 @@ function crossings(layers: readonly (readonly Vertex[])[]): number {
 }
 
 /** Computes vertical positions, each as close to the mean of its neighbours as the order and the gaps permit. */
-function place(layers: readonly (readonly Vertex[])[]): void {
+function placeVertically(layers: readonly (readonly Vertex[])[]): void {
   for (const layer of layers) {
     let y = 0;
     for (const vertex of layer) {
@@ -233,7 +233,7 @@ function place(layers: readonly (readonly Vertex[])[]): void {
 }
 
 /** Sets the horizontal position of each layer, and returns the total width. */
-function spread(layers: readonly (readonly Vertex[])[]): number {
+function placeLayers(layers: readonly (readonly Vertex[])[]): number {
   let x = 0;
   for (const layer of layers) {
     const width = Math.max(0, ...layer.map((vertex) => vertex.box?.width ?? 0));
@@ -261,7 +261,7 @@ function shiftToOrigin(layout: Layout): void {
 }
 
 /** Places boxes without links in rows below the others. */
-function placeAlone(boxes: readonly Box[], layout: Layout): void {
+function placeUnlinked(boxes: readonly Box[], layout: Layout): void {
   const most = Math.max(layout.width, 640);
   let [x, y, rowHeight] = [0, layout.height > 0 ? layout.height + 2 * BOX_GAP : 0, 0];
   for (const box of boxes) {

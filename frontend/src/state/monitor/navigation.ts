@@ -8,15 +8,15 @@ export class NavigationState {
   /** A goal failed, or another was accepted. */
   readonly outcomeChanged = new Signal<GoalOutcome>();
   /** The last state; null until the server has reported one. */
-  told: Told | null = null;
+  lastState: Told | null = null;
   private opened = false;
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
-      if (this.opened) this.announce();
+      if (this.opened) this.sendWatch();
     });
     connection.on("navigation_state", (told) => {
-      this.told = told;
+      this.lastState = told;
       this.changed.emit();
     });
     connection.on("goal_outcome", (outcome) => this.outcomeChanged.emit(outcome));
@@ -25,14 +25,14 @@ export class NavigationState {
   setOpen(opened: boolean): void {
     if (opened === this.opened) return;
     this.opened = opened;
-    this.announce();
+    this.sendWatch();
   }
 
   command(command: NavigationCommand): void {
     this.connection.send({ type: "command_navigation", command });
   }
 
-  private announce(): void {
+  private sendWatch(): void {
     this.connection.send({ type: "watch_navigation", open: this.opened });
   }
 }

@@ -10,7 +10,7 @@ export class NodeGraphState {
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
-      if (this.watched) this.announce();
+      if (this.watched) this.sendWatch();
     });
     connection.on("node_graph", (graph) => {
       this.graph = graph;
@@ -21,10 +21,10 @@ export class NodeGraphState {
   watch(watched: boolean): void {
     if (watched === this.watched) return;
     this.watched = watched;
-    this.announce();
+    this.sendWatch();
   }
 
-  private announce(): void {
+  private sendWatch(): void {
     this.connection.send({ type: "watch_node_graph", watched: this.watched });
   }
 }

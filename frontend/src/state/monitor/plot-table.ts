@@ -22,11 +22,11 @@ export function plotTable(
     return [Math.max(0, buffer.indexFrom(source, from) - 1), end] as const;
   });
   const total = spans.reduce((sum, [start, end]) => sum + end - start, 0);
-  if (total <= 2 * columns) return exact(series, source, spans);
+  if (total <= 2 * columns) return allSamples(series, source, spans);
   // Columns must not shift while the window moves, or the line would flicker. The width is rounded, because differences
   // of times are not exact.
   const width = Number(((to - from) / columns).toPrecision(5));
-  return condensed(series, source, spans, Math.floor(from / width) * width, width, columns + 1);
+  return minMaxSamples(series, source, spans, Math.floor(from / width) * width, width, columns + 1);
 }
 
 /**
@@ -46,17 +46,17 @@ export function csvText(
     while (end < times.length && times[end] === to) end++;
     return [buffer.indexFrom(source, from), end] as const;
   });
-  const [times, ...columns] = exact(series, source, spans);
+  const [times, ...columns] = allSamples(series, source, spans);
   const rows = times.map((time, row) => {
     const cells = columns.map((column) => String(column[row] ?? ""));
     return [time.toFixed(6), ...cells].join(",");
   });
-  return ["time", ...names.map(quoted)].join(",") + "\n" + rows.map((row) => row + "\n").join("");
+  return ["time", ...names.map(csvQuoted)].join(",") + "\n" + rows.map((row) => row + "\n").join("");
 }
 
 type Spans = readonly (readonly [number, number])[];
 
-function exact(series: readonly SeriesBuffer[], source: TimeSource, spans: Spans): PlotTable {
+function allSamples(series: readonly SeriesBuffer[], source: TimeSource, spans: Spans): PlotTable {
   const all = new Set<number>();
   spans.forEach(([start, end], index) => {
     for (const time of series[index]?.times(source).subarray(start, end) ?? []) all.add(time);
@@ -67,13 +67,13 @@ function exact(series: readonly SeriesBuffer[], source: TimeSource, spans: Spans
     const column = new Array<number | null | undefined>(times.length);
     const [start, end] = spans[index] ?? [0, 0];
     const [found, values] = [buffer.times(source), buffer.values];
-    for (let at = start; at < end; at++) column[rows.get(found[at] ?? 0) ?? 0] = drawn(values[at]);
+    for (let at = start; at < end; at++) column[rows.get(found[at] ?? 0) ?? 0] = drawnValue(values[at]);
     return column;
   });
   return [times, ...columns];
 }
 
-function condensed(
+function minMaxSamples(
   series: readonly SeriesBuffer[],
   source: TimeSource,
   spans: Spans,
@@ -97,8 +97,8 @@ function condensed(
         if (!(value >= (values[least] ?? NaN))) least = next;
         if (!(value <= (values[greatest] ?? NaN))) greatest = next;
       }
-      column[2 * bucket] = drawn(values[Math.min(least, greatest)]);
-      if (least !== greatest) column[2 * bucket + 1] = drawn(values[Math.max(least, greatest)]);
+      column[2 * bucket] = drawnValue(values[Math.min(least, greatest)]);
+      if (least !== greatest) column[2 * bucket + 1] = drawnValue(values[Math.max(least, greatest)]);
       at = next;
     }
     return column;
@@ -110,10 +110,10 @@ function bucketOf(time: number, from: number, width: number, count: number): num
   return Math.min(count + 1, Math.max(0, Math.floor((time - from) / width) + 1));
 }
 
-function drawn(value: number | undefined): number | null {
+function drawnValue(value: number | undefined): number | null {
   return value === undefined || !Number.isFinite(value) ? null : value;
 }
 
-function quoted(name: string): string {
+function csvQuoted(name: string): string {
   return /[",\n]/.test(name) ? `"${name.replaceAll('"', '""')}"` : name;
 }

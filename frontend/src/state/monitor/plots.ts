@@ -35,14 +35,14 @@ export class PlotsState {
   readonly changed = new Signal();
   /** Samples arrived, or the window moved. */
   readonly moved = new Signal();
-  readonly fieldsTold = new Signal<TopicFields>();
+  readonly fieldsArrived = new Signal<TopicFields>();
   readonly plots: Plot[] = [];
   /** The length of the window, s. */
   seconds = FIRST_SECONDS;
   source: TimeSource = "received";
-  private heldAt: readonly [number, number] | null = null;
+  private frozenAt: readonly [number, number] | null = null;
   private opened = false;
-  private present = true;
+  private isLive = true;
   private nextId = 1;
 
   constructor(
@@ -51,7 +51,7 @@ export class PlotsState {
   ) {
     this.restore();
     connection.on("hello", () => {
-      if (this.opened) this.announce();
+      if (this.opened) this.sendWatch();
     });
     connection.on("series_states", ({ states }) => {
       for (const { id, error } of states) {
@@ -60,13 +60,13 @@ export class PlotsState {
       }
       this.changed.emit();
     });
-    connection.on("topic_fields", (fields) => this.fieldsTold.emit(fields));
-    connection.on("playhead", ({ live }) => (this.present = live));
+    connection.on("topic_fields", (fields) => this.fieldsArrived.emit(fields));
+    connection.on("playhead", ({ live }) => (this.isLive = live));
     // The samples are from another time than the one shown now.
     connection.on("time_reset", () => {
-      if (!this.present) this.clear();
+      if (!this.isLive) this.clear();
     });
-    connection.samples.on((samples) => this.take(samples));
+    connection.samples.on((samples) => this.addSamples(samples));
   }
 
   get series(): Series[] {
@@ -74,12 +74,12 @@ export class PlotsState {
   }
 
   get paused(): boolean {
-    return this.heldAt !== null;
+    return this.frozenAt !== null;
   }
 
   /** The time span of the plots, s; null if there is nothing to show. */
   get window(): readonly [number, number] | null {
-    if (this.heldAt) return this.heldAt;
+    if (this.frozenAt) return this.frozenAt;
     const times = this.series.map((each) => each.buffer.latest(this.source)).filter((time) => time !== null);
     if (times.length === 0) return null;
     const to = Math.max(...times);
@@ -89,82 +89,82 @@ export class PlotsState {
   /** Starts or stops receiving samples, when the panel is opened or closed. */
   setOpen(open: boolean): void {
     this.opened = open;
-    this.announce();
+    this.sendWatch();
   }
 
   addPlot(): Plot {
     const plot = { id: this.nextId++, series: [], range: null };
     this.plots.push(plot);
-    this.edited();
+    this.store();
     return plot;
   }
 
   removePlot(plot: Plot): void {
     this.plots.splice(this.plots.indexOf(plot), 1);
-    this.edited();
+    this.store();
   }
 
   addSeries(plot: Plot, field: FieldName): void {
     if (plot.series.some((each) => fieldText(each) === fieldText(field))) return;
     plot.series.push({ ...field, id: this.nextId++, buffer: new SeriesBuffer(), error: null });
-    this.edited();
+    this.store();
   }
 
   removeSeries(plot: Plot, series: Series): void {
     plot.series.splice(plot.series.indexOf(series), 1);
-    this.edited();
+    this.store();
   }
 
   setRange(plot: Plot, range: readonly [number, number] | null): void {
     plot.range = range;
-    this.edited();
+    this.store();
   }
 
   setSeconds(seconds: number): void {
     this.seconds = seconds;
-    this.heldAt = null;
-    this.edited();
+    this.frozenAt = null;
+    this.store();
   }
 
   setSource(source: TimeSource): void {
     this.source = source;
-    this.heldAt = null;
-    this.edited();
+    this.frozenAt = null;
+    this.store();
   }
 
   /** Freezes or resumes the plots; samples are received in both cases. */
   setPaused(paused: boolean): void {
-    this.heldAt = paused ? this.window : null;
+    this.frozenAt = paused ? this.window : null;
     this.changed.emit();
     this.moved.emit();
   }
 
   /** Freezes the plots at a time span. */
-  hold(from: number, to: number): void {
-    this.heldAt = [from, to];
+  freezeAt(from: number, to: number): void {
+    this.frozenAt = [from, to];
     this.changed.emit();
     this.moved.emit();
   }
 
   clear(): void {
     for (const { buffer } of this.series) buffer.clear();
-    this.heldAt = null;
+    this.frozenAt = null;
     this.changed.emit();
     this.moved.emit();
   }
 
   /** Requests the fields of a topic that can be plotted; null cancels the request. */
-  askFields(topic: string | null): void {
+  requestFields(topic: string | null): void {
     this.connection.send({ type: "ask_fields", topic });
   }
 
-  private take(samples: readonly SeriesSamples[]): void {
+  private addSamples(samples: readonly SeriesSamples[]): void {
     const series = new Map(this.series.map((each) => [each.id, each]));
     for (const { id, received, stamps, values } of samples) series.get(id)?.buffer.append(received, stamps, values);
     if (!this.paused) this.moved.emit();
   }
 
-  private edited(): void {
+  private store(): void {
     const saved: Saved = {
       seconds: this.seconds,
       source: this.source,
@@ -174,7 +174,7 @@ export class PlotsState {
       })),
     };
     this.storage.setItem(SAVED_KEY, JSON.stringify(saved));
-    if (this.opened) this.announce();
+    if (this.opened) this.sendWatch();
     this.changed.emit();
     this.moved.emit();
   }
@@ -202,7 +202,7 @@ export class PlotsState {
     }
   }
 
-  private announce(): void {
+  private sendWatch(): void {
     const series = this.opened ? this.series.map(({ id, topic, path }) => ({ id, topic, path })) : [];
     this.connection.send({ type: "watch_series", series, seconds: this.seconds });
   }

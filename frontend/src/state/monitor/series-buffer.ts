@@ -3,7 +3,7 @@ export type TimeSource = "received" | "stamp";
 
 const FIRST_CAPACITY = 1024;
 /** The maximum number of samples: ten minutes at 1 kHz. */
-const MOST_SAMPLES = 600_000;
+const MAX_SAMPLES = 600_000;
 /** Stamps that go back by more than this started over: simulated time was reset, or a recording restarted. */
 const RESET_SECONDS = 1;
 
@@ -14,7 +14,7 @@ export class SeriesBuffer {
   private numbers = new Float64Array(FIRST_CAPACITY);
   private count = 0;
 
-  constructor(private readonly most = MOST_SAMPLES) {}
+  constructor(private readonly most = MAX_SAMPLES) {}
 
   get length(): number {
     return this.count;
@@ -82,13 +82,13 @@ export class SeriesBuffer {
       if (kept + more <= this.numbers.length) return;
     }
     const capacity = Math.max(this.count + more, Math.min(this.most, this.numbers.length * 2));
-    this.received = grown(this.received, capacity);
-    this.stamps = grown(this.stamps, capacity);
-    this.numbers = grown(this.numbers, capacity);
+    this.received = resized(this.received, capacity);
+    this.stamps = resized(this.stamps, capacity);
+    this.numbers = resized(this.numbers, capacity);
   }
 }
 
-function grown(array: Float64Array, capacity: number): Float64Array<ArrayBuffer> {
+function resized(array: Float64Array, capacity: number): Float64Array<ArrayBuffer> {
   const larger = new Float64Array(capacity);
   larger.set(array);
   return larger;

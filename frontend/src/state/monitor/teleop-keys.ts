@@ -52,7 +52,7 @@ export function motionOfKey(key: string, shift: boolean): Motion | null {
 }
 
 /** Returns the sum of several motions, clamped to -1 to 1. */
-export function together(motions: Iterable<Motion>): Motion {
+export function sumOf(motions: Iterable<Motion>): Motion {
   const sum = { ...STILL };
   for (const each of motions) {
     sum.x += each.x;
@@ -60,7 +60,7 @@ export function together(motions: Iterable<Motion>): Motion {
     sum.z += each.z;
     sum.turn += each.turn;
   }
-  return { x: unit(sum.x), y: unit(sum.y), z: unit(sum.z), turn: unit(sum.turn) };
+  return { x: clampToUnit(sum.x), y: clampToUnit(sum.y), z: clampToUnit(sum.z), turn: clampToUnit(sum.turn) };
 }
 
 export function isStill(each: Motion): boolean {
@@ -68,11 +68,11 @@ export function isStill(each: Motion): boolean {
 }
 
 /** Returns the deflection of a stick, -1 to 1, without the dead zone around its centre. */
-export function stick(value: number, play = 0.12): number {
+export function stickDeflection(value: number, play = 0.12): number {
   const beyond = Math.abs(value) - play;
-  return beyond <= 0 ? 0 : unit((Math.sign(value) * beyond) / (1 - play));
+  return beyond <= 0 ? 0 : clampToUnit((Math.sign(value) * beyond) / (1 - play));
 }
 
-function unit(value: number): number {
+function clampToUnit(value: number): number {
   return Math.min(1, Math.max(-1, value));
 }

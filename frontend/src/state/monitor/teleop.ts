@@ -1,7 +1,7 @@
 import type { Connection } from "../../connection/connection";
 import type { TeleopState as Aim, TwistKind } from "../../protocol";
 import { Signal } from "../../signal";
-import { isStill, STILL, together, type Motion } from "./teleop-keys";
+import { isStill, STILL, sumOf, type Motion } from "./teleop-keys";
 
 export interface TeleopSettings {
   topic: string;
@@ -20,7 +20,7 @@ export interface TeleopSettings {
 export type Source = "keys" | "pad" | "gamepad";
 
 const SAVED_KEY = "linkwright.teleop.1";
-const FIRST: TeleopSettings = {
+const DEFAULTS: TeleopSettings = {
   topic: "/cmd_vel",
   kind: "auto",
   frameId: "base_link",
@@ -45,9 +45,9 @@ export class TeleopState {
     private readonly connection: Connection,
     private readonly storage: Pick<Storage, "getItem" | "setItem">,
   ) {
-    this.settings = { ...FIRST, ...read(storage.getItem(SAVED_KEY)) };
+    this.settings = { ...DEFAULTS, ...parseSettings(storage.getItem(SAVED_KEY)) };
     connection.on("hello", () => {
-      if (this.opened) this.announce();
+      if (this.opened) this.sendTarget();
     });
     connection.on("teleop_state", (aim) => {
       this.aim = aim;
@@ -60,7 +60,7 @@ export class TeleopState {
 
   /** The sum of the motions of all sources. */
   get motion(): Motion {
-    return together(this.motions.values());
+    return sumOf(this.motions.values());
   }
 
   setOpen(open: boolean): void {
@@ -68,7 +68,7 @@ export class TeleopState {
     if (!open) this.stop();
     this.opened = open;
     this.aim = null;
-    this.announce();
+    this.sendTarget();
   }
 
   configure(change: Partial<TeleopSettings>): void {
@@ -78,7 +78,7 @@ export class TeleopState {
     const { topic, kind, frameId } = this.settings;
     if (topic !== before.topic || kind !== before.kind || frameId !== before.frameId) {
       this.stop();
-      if (this.opened) this.announce();
+      if (this.opened) this.sendTarget();
     }
     this.changed.emit();
   }
@@ -121,14 +121,14 @@ export class TeleopState {
     });
   }
 
-  private announce(): void {
+  private sendTarget(): void {
     const { topic, kind, frameId } = this.settings;
     const target = this.opened ? { topic, kind, frame_id: frameId } : null;
     this.connection.send({ type: "aim_teleop", target });
   }
 }
 
-function read(text: string | null): Partial<TeleopSettings> {
+function parseSettings(text: string | null): Partial<TeleopSettings> {
   try {
     return text === null ? {} : (JSON.parse(text) as Partial<TeleopSettings>);
   } catch {

@@ -1,4 +1,4 @@
-import { add, dot, scale, subtract, turn, unit, type Vector } from "./vector";
+import { add, dot, scale, subtract, rotateZ, unit, type Vector } from "./vector";
 
 /** Ogre's default vertical field of view, which RViz does not change. */
 export const FIELD_OF_VIEW = Math.PI / 4;
@@ -37,21 +37,21 @@ export interface ViewSize {
 }
 
 export function toFixed(point: Vector, target: Target): Vector {
-  return add(turn(point, target.yaw), target.position);
+  return add(rotateZ(point, target.yaw), target.position);
 }
 
 export function toTarget(point: Vector, target: Target): Vector {
-  return turn(subtract(point, target.position), -target.yaw);
+  return rotateZ(subtract(point, target.position), -target.yaw);
 }
 
 /** Converts a camera from a target's frame to the fixed frame. */
 export function cameraInFixed(camera: Camera, target: Target): Camera {
-  return moved(camera, (point) => toFixed(point, target), target.yaw);
+  return transformed(camera, (point) => toFixed(point, target), target.yaw);
 }
 
 /** Converts a camera from the fixed frame to a target's frame. */
 export function cameraInTarget(camera: Camera, target: Target): Camera {
-  return moved(camera, (point) => toTarget(point, target), -target.yaw);
+  return transformed(camera, (point) => toTarget(point, target), -target.yaw);
 }
 
 /** Returns the ray from the camera through a pixel, counted from the upper left corner. */
@@ -73,12 +73,12 @@ export function onGround({ origin, direction }: Ray): Vector | null {
   return add(origin, direction, distance);
 }
 
-function moved(camera: Camera, place: (point: Vector) => Vector, yaw: number): Camera {
+function transformed(camera: Camera, place: (point: Vector) => Vector, yaw: number): Camera {
   return {
     position: place(camera.position),
-    right: turn(camera.right, yaw),
-    up: turn(camera.up, yaw),
-    back: turn(camera.back, yaw),
+    right: rotateZ(camera.right, yaw),
+    up: rotateZ(camera.up, yaw),
+    back: rotateZ(camera.back, yaw),
     scale: camera.scale,
     focal: camera.focal && place(camera.focal),
   };

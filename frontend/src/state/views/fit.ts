@@ -5,7 +5,7 @@ import { number, type ViewValues } from "./view-controller";
 /** The margin around the box, as a factor of its size. */
 const MARGIN = 1.2;
 /** The minimum near clip distance, and its share of the distance to the box. */
-const NEAREST_CLIP = 0.001;
+const MIN_CLIP = 0.001;
 const CLIP_SHARE = 0.25;
 const NEAR_CLIP = "Near Clip Distance";
 
@@ -43,7 +43,7 @@ export function framing(camera: Camera, values: ViewValues, span: Span, { width,
     middle,
     distance,
     scale: metres > 0 ? 1 / (metres * MARGIN) : 0,
-    clip: isClipped ? { [NEAR_CLIP]: Math.max(NEAREST_CLIP, room) } : {},
+    clip: isClipped ? { [NEAR_CLIP]: Math.max(MIN_CLIP, room) } : {},
   };
 }
 
@@ -59,7 +59,7 @@ export function spanInTarget(span: Span, target: Target): Span {
 }
 
 /** Whether a box contains another. */
-export function holds(outer: Span, inner: Span): boolean {
+export function contains(outer: Span, inner: Span): boolean {
   return ([0, 1, 2] as const).every((i) => outer.min[i] <= inner.min[i] && inner.max[i] <= outer.max[i]);
 }
 

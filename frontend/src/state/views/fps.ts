@@ -39,7 +39,7 @@ export class FpsController implements ViewController {
   }
 
   zero(): ViewValues {
-    return { ...vectorValues("Position", START), ...looking(subtract([0, 0, 0], START), [0, 0, 1]) };
+    return { ...vectorValues("Position", START), ...anglesOf(subtract([0, 0, 0], START), [0, 0, 1]) };
   }
 
   drag(values: ViewValues, drag: Drag): ViewValues {
@@ -64,7 +64,7 @@ export class FpsController implements ViewController {
 
   lookAt(values: ViewValues, point: Vector): ViewValues {
     const { position, up } = this.camera(values);
-    return looking(subtract(point, position), up);
+    return anglesOf(subtract(point, position), up);
   }
 
   fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
@@ -75,7 +75,7 @@ export class FpsController implements ViewController {
 
   mimic({ camera }: Look): ViewValues {
     const ahead = subtract([0, 0, 0], camera.back);
-    return { ...vectorValues("Position", camera.position), ...looking(ahead, camera.up) };
+    return { ...vectorValues("Position", camera.position), ...anglesOf(ahead, camera.up) };
   }
 
   retarget(values: ViewValues, from: Target, to: Target): ViewValues {
@@ -101,7 +101,7 @@ export class FpsController implements ViewController {
 }
 
 /** Returns yaw and pitch of a direction; `up` defines the yaw of a vertical one. */
-function looking(ahead: Vector, up: Vector): ViewValues {
+function anglesOf(ahead: Vector, up: Vector): ViewValues {
   const far = length(ahead);
   if (far === 0) return {};
   const down = -ahead[2] / far;

@@ -25,7 +25,7 @@ const ZOOM_PER_WHEEL_UNIT = 0.001;
 /** The height at which RViz places an Orbit view that replaces TopDownOrtho, m. */
 const ABOVE_MAP = 100;
 /** A small horizontal offset from the vertical, which defines the yaw of the view. */
-const ASIDE = 0.0001;
+const HORIZONTAL_OFFSET = 0.0001;
 
 /**
  * RViz's Orbit: position = focal + distance (cos yaw cos pitch, sin yaw cos pitch, sin pitch), looking at the focal
@@ -38,7 +38,7 @@ export class OrbitController implements ViewController {
   camera(values: ViewValues): Camera {
     const { distance, yaw, pitch, focal } = orbitOf(values);
     const sign = values["Invert Z Axis"] === true ? -1 : 1;
-    const back = direction(yaw * sign, pitch * sign);
+    const back = orbitDirection(yaw * sign, pitch * sign);
     const flat = Math.hypot(back[0], back[1]);
     const right: Vector = [(-back[1] * sign) / flat, (back[0] * sign) / flat, 0];
     return { position: add(focal, back, distance), right, up: cross(back, right), back, scale: null, focal };
@@ -73,7 +73,7 @@ export class OrbitController implements ViewController {
   }
 
   lookAt(values: ViewValues, point: Vector): ViewValues {
-    return aroundFrom(point, this.camera(values).position);
+    return orbitFrom(point, this.camera(values).position);
   }
 
   fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
@@ -84,11 +84,11 @@ export class OrbitController implements ViewController {
   mimic({ cls, values, camera }: Look): ViewValues {
     if (cls === "rviz_default_plugins/Orbit") {
       const { distance, focal } = orbitOf(values);
-      return { ...aroundFrom(focal, camera.position), Distance: distance };
+      return { ...orbitFrom(focal, camera.position), Distance: distance };
     }
-    if (cls === "rviz_default_plugins/TopDownOrtho") return aboveMap(camera.position);
+    if (cls === "rviz_default_plugins/TopDownOrtho") return orbitAbove(camera.position);
     const distance = length(camera.position);
-    return aroundFrom(add(camera.position, camera.back, -distance), camera.position);
+    return orbitFrom(add(camera.position, camera.back, -distance), camera.position);
   }
 
   retarget(values: ViewValues, from: Target, to: Target): ViewValues {
@@ -133,7 +133,7 @@ export function orbitOf(values: ViewValues): { distance: number; yaw: number; pi
 }
 
 /** Returns the values of a camera that looks from one point at another. */
-export function aroundFrom(focal: Vector, viewpoint: Vector): ViewValues {
+export function orbitFrom(focal: Vector, viewpoint: Vector): ViewValues {
   const distance = clampDistance(distanceBetween(focal, viewpoint));
   const [x, y, z] = scale(add(viewpoint, focal, -1), 1 / distance);
   return {
@@ -145,8 +145,8 @@ export function aroundFrom(focal: Vector, viewpoint: Vector): ViewValues {
 }
 
 /** Returns the values that look straight down at the position of a TopDownOrtho view. */
-export function aboveMap([x, y]: Vector): ViewValues {
-  return aroundFrom([x, y, 0], [x, y - ASIDE, ABOVE_MAP]);
+export function orbitAbove([x, y]: Vector): ViewValues {
+  return orbitFrom([x, y, 0], [x, y - HORIZONTAL_OFFSET, ABOVE_MAP]);
 }
 
 function clampDistance(distance: number): number {
@@ -154,6 +154,6 @@ function clampDistance(distance: number): number {
 }
 
 /** Returns the unit vector from the focal point to the camera. */
-export function direction(yaw: number, pitch: number): Vector {
+export function orbitDirection(yaw: number, pitch: number): Vector {
   return [Math.cos(yaw) * Math.cos(pitch), Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];
 }

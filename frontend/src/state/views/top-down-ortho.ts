@@ -1,6 +1,6 @@
 import { toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
 import { framing } from "./fit";
-import { turn, type Span, type Vector } from "./vector";
+import { rotateZ, type Span, type Vector } from "./vector";
 import {
   number,
   RADIANS_PER_PIXEL,
@@ -33,8 +33,8 @@ export class TopDownOrthoController implements ViewController {
     const side = Math.sign(scale);
     return {
       position: [number(values, "X", 0), number(values, "Y", 0), HEIGHT],
-      right: turn([side, 0, 0], angle),
-      up: turn([0, side, 0], angle),
+      right: rotateZ([side, 0, 0], angle),
+      up: rotateZ([0, side, 0], angle),
       back: [0, 0, 1],
       scale: Math.abs(scale),
       focal: null,
@@ -53,7 +53,7 @@ export class TopDownOrthoController implements ViewController {
       case "rotate2d":
         return { Angle: number(values, "Angle", 0) + dx * RADIANS_PER_PIXEL };
       case "moveXY":
-        return shifted(values, turn([-dx / scale, dy / scale, 0], number(values, "Angle", 0)));
+        return shifted(values, rotateZ([-dx / scale, dy / scale, 0], number(values, "Angle", 0)));
       case "zoom":
         return { Scale: zoomed(scale, 1 - dy * ZOOM_PER_PIXEL) };
     }

@@ -45,7 +45,7 @@ export function unit(a: Vector): Vector {
 }
 
 /** Rotates about z, rad. */
-export function turn(a: Vector, angle: number): Vector {
+export function rotateZ(a: Vector, angle: number): Vector {
   const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
   return [a[0] * cos - a[1] * sin, a[0] * sin + a[1] * cos, a[2]];
 }

@@ -1,7 +1,7 @@
 import { onGround, rayThrough, type Camera, type ViewSize } from "./camera";
 import { framing } from "./fit";
 import { add, distanceBetween, length, scale, subtract, type Span, type Vector } from "./vector";
-import { aboveMap, aroundFrom, OrbitController, orbitOf, type OrbitMotion } from "./orbit";
+import { orbitAbove, orbitFrom, OrbitController, orbitOf, type OrbitMotion } from "./orbit";
 import { vectorValues, type Drag, type Look, type MouseHint, type ViewValues } from "./view-controller";
 
 /**
@@ -9,7 +9,7 @@ import { vectorValues, type Drag, type Look, type MouseHint, type ViewValues } f
  */
 const RAISE = 0.2;
 /** m; near the horizon a pixel covers many metres, so the motion of the focal point per step is limited. */
-const LONGEST_STEP = 1;
+const MAX_STEP = 1;
 
 /** RViz's XYOrbit: an Orbit view whose focal point moves on the ground, z = 0 of its target. */
 export class XYOrbitController extends OrbitController {
@@ -25,7 +25,7 @@ export class XYOrbitController extends OrbitController {
   }
 
   override lookAt(values: ViewValues, [x, y]: Vector): ViewValues {
-    return aroundFrom([x, y, 0], this.camera(values).position);
+    return orbitFrom([x, y, 0], this.camera(values).position);
   }
 
   /**
@@ -40,7 +40,7 @@ export class XYOrbitController extends OrbitController {
 
   /** Keeps the camera if it is above the ground and looks at it; otherwise starts from the default, as RViz does. */
   override mimic({ cls, camera }: Look): ViewValues {
-    if (cls === "rviz_default_plugins/TopDownOrtho") return aboveMap(camera.position);
+    if (cls === "rviz_default_plugins/TopDownOrtho") return orbitAbove(camera.position);
     const ahead = onGround({ origin: camera.position, direction: scale(camera.back, -1) });
     const below = onGround({ origin: camera.position, direction: scale(camera.up, -1) });
     if (!ahead || !below) return this.zero();
@@ -48,7 +48,7 @@ export class XYOrbitController extends OrbitController {
     const distance = (far * down) / (RAISE * far + down);
     const viewpoint = add(camera.position, camera.up, -RAISE * distance);
     const focal = onGround({ origin: viewpoint, direction: scale(camera.back, -1) });
-    return focal ? aroundFrom(focal, viewpoint) : this.zero();
+    return focal ? orbitFrom(focal, viewpoint) : this.zero();
   }
 
   override motion(drag: Pick<Drag, "left" | "middle" | "right" | "shift">): OrbitMotion {
@@ -69,7 +69,7 @@ export class XYOrbitController extends OrbitController {
     if (!before || !after) return {};
     const step = subtract(before, after);
     const far = length(step);
-    const allowed = far > LONGEST_STEP ? scale(step, LONGEST_STEP / far) : step;
+    const allowed = far > MAX_STEP ? scale(step, MAX_STEP / far) : step;
     return vectorValues("Focal Point", add(orbitOf(values).focal, allowed));
   }
 }

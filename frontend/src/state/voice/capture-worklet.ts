@@ -1,7 +1,7 @@
 /// <reference lib="webworker" />
 import { MOST_SAMPLES, SOUND_RATE } from "../../protocol";
 import { GapFinder } from "./gaps";
-import { pcm, Resampler } from "./resampler";
+import { toPcm, Resampler } from "./resampler";
 
 declare const sampleRate: number;
 declare class AudioWorkletProcessor {
@@ -43,8 +43,8 @@ class Capture extends AudioWorkletProcessor {
     const [first] = channels;
     if (!first) return true;
     const mono = first.map((_, i) => channels.reduce((sum, channel) => sum + (channel[i] ?? 0), 0) / channels.length);
-    this.gaps.take(mono, Date.now());
-    for (const sample of pcm(this.resampler.take(mono))) {
+    this.gaps.add(mono, Date.now());
+    for (const sample of toPcm(this.resampler.add(mono))) {
       this.block[this.filled++] = sample;
       if (this.filled === MOST_SAMPLES) this.send();
     }

@@ -23,11 +23,11 @@ export class GapFinder {
   private zeros = 0;
   private edge = new Float32Array(EDGE);
   private edgeAt = 0;
-  private taken = 0;
+  private sampleCount = 0;
   private windowEnd: number;
   private windows = 0;
-  private least = Infinity;
-  private before = Infinity;
+  private minimumDelay = Infinity;
+  private previousDelay = Infinity;
 
   /** Starts at the beginning of a stream with this sample rate, Hz. */
   constructor(private readonly rate: number) {
@@ -35,17 +35,17 @@ export class GapFinder {
   }
 
   /** Adds the next samples of the stream, -1 to 1, which arrived at a time in ms. */
-  take(samples: Float32Array, now: number): void {
+  add(samples: Float32Array, now: number): void {
     for (const sample of samples) this.lookForHole(sample);
-    this.taken += samples.length;
-    this.least = Math.min(this.least, now - (1000 * this.taken) / this.rate);
-    if (this.taken < this.windowEnd) return;
-    const later = this.least - this.before;
+    this.sampleCount += samples.length;
+    this.minimumDelay = Math.min(this.minimumDelay, now - (1000 * this.sampleCount) / this.rate);
+    if (this.sampleCount < this.windowEnd) return;
+    const later = this.minimumDelay - this.previousDelay;
     if (this.windows >= SETTLING && later > LATE_MS) this.lost += later / 1000;
     this.windows += 1;
     this.windowEnd += WINDOW * this.rate;
-    this.before = this.least;
-    this.least = Infinity;
+    this.previousDelay = this.minimumDelay;
+    this.minimumDelay = Infinity;
   }
 
   /** Returns the seconds lost since the last call. */

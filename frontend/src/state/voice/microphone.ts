@@ -33,7 +33,7 @@ export class Microphone {
   private capture: Capture | null = null;
   private opening: Promise<boolean> | null = null;
   /** The number of attempts to open the microphone; results of an abandoned attempt are dropped. */
-  private turn = 0;
+  private attempt = 0;
 
   constructor(private readonly openCapture: OpenCapture = openBrowserCapture) {}
 
@@ -61,7 +61,7 @@ export class Microphone {
   }
 
   close(): void {
-    this.turn += 1;
+    this.attempt += 1;
     this.capture?.close();
     this.capture = null;
     this.peak = 0;
@@ -69,24 +69,24 @@ export class Microphone {
   }
 
   private async start(): Promise<boolean> {
-    const turn = ++this.turn;
+    const turn = ++this.attempt;
     try {
       const capture = await this.openCapture(
         (samples, lostSeconds) => {
-          if (turn === this.turn) this.take(samples, lostSeconds);
+          if (turn === this.attempt) this.addBlock(samples, lostSeconds);
         },
         () => {
-          if (turn === this.turn) this.fail("lost");
+          if (turn === this.attempt) this.fail("lost");
         },
       );
-      if (turn !== this.turn) {
+      if (turn !== this.attempt) {
         capture.close();
         return false;
       }
       this.capture = capture;
       return true;
     } catch (error) {
-      if (turn === this.turn) this.fail(problemOf(error), error instanceof Error ? error.message : String(error));
+      if (turn === this.attempt) this.fail(problemOf(error), error instanceof Error ? error.message : String(error));
       return false;
     } finally {
       this.opening = null;
@@ -94,7 +94,7 @@ export class Microphone {
     }
   }
 
-  private take(samples: Int16Array, lostSeconds: number): void {
+  private addBlock(samples: Int16Array, lostSeconds: number): void {
     this.lostSeconds += lostSeconds;
     if (samples.length === 0) return;
     this.peak = samples.reduce((most, sample) => Math.max(most, Math.abs(sample)), 0) / 32768;

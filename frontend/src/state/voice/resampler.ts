@@ -11,7 +11,7 @@ export class Resampler {
   private readonly step: number;
   private readonly half: number;
   private readonly cutoff: number;
-  private kept: Float32Array;
+  private buffered: Float32Array;
   /** The time of the next output sample, in samples of `buffered`. */
   private at: number;
 
@@ -19,21 +19,21 @@ export class Resampler {
     this.step = from / to;
     this.cutoff = BAND * Math.min(1, to / from);
     this.half = Math.ceil(REACH / this.cutoff);
-    this.kept = new Float32Array(this.half);
+    this.buffered = new Float32Array(this.half);
     this.at = this.half;
   }
 
   /** Adds samples of the stream, and returns the output samples that this completes. */
-  take(samples: Float32Array): Float32Array {
-    const all = new Float32Array(this.kept.length + samples.length);
-    all.set(this.kept);
-    all.set(samples, this.kept.length);
+  add(samples: Float32Array): Float32Array {
+    const all = new Float32Array(this.buffered.length + samples.length);
+    all.set(this.buffered);
+    all.set(samples, this.buffered.length);
     const count = Math.max(0, Math.ceil((all.length - this.half - this.at) / this.step));
     const made = new Float32Array(count);
     for (let i = 0; i < count; i++) made[i] = this.sampleAt(all, this.at + i * this.step);
     const next = this.at + count * this.step;
     const drop = Math.min(all.length, Math.max(0, Math.floor(next) - this.half));
-    this.kept = all.slice(drop);
+    this.buffered = all.slice(drop);
     this.at = next - drop;
     return made;
   }
@@ -54,6 +54,6 @@ export class Resampler {
 }
 
 /** Converts samples from -1 to 1 to 16-bit PCM. */
-export function pcm(samples: Float32Array): Int16Array {
+export function toPcm(samples: Float32Array): Int16Array {
   return Int16Array.from(samples, (value) => Math.round(Math.max(-1, Math.min(1, value)) * 32767));
 }

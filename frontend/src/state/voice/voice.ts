@@ -6,17 +6,17 @@ import { Microphone } from "./microphone";
 import { Speaker } from "./speaker";
 
 /** ms for which the microphone stays open after the button was released: while it opens, a word may be lost. */
-const WARM_MS = 60_000;
-const MOST_KEPT = 100;
+const OPEN_AFTER_USE_MS = 60_000;
+const MAX_HISTORY = 100;
 /**
  * The maximum seconds missing in a word. Of synthetic words enrolled with 0.03 s missing, all were recognised; with 0.1
  * s, half.
  */
-const MOST_LOST = 0.03;
+const MAX_LOST_SECONDS = 0.03;
 const HEADER_BYTES = 16;
 
 /** A line of the conversation. */
-export interface Said {
+export interface ConversationLine {
   part: ConversationPart;
   text: string;
 }
@@ -41,18 +41,18 @@ export class VoiceState {
   /** A line was added to the conversation, or the partial text changed. */
   readonly conversed = new Signal();
   /** The lines of the conversation, oldest first. */
-  readonly history: Said[] = [];
+  readonly history: ConversationLine[] = [];
   /** The text recognised so far of the current utterance. */
   partial = "";
   /** The server's state; null while it is not requested. */
-  told: Told | null = null;
+  serverState: Told | null = null;
   readonly speaker: Speaker;
   private readonly watching = new Set<object>();
-  private pressed = false;
+  private isPressed = false;
   /** Whether the button was released, but the last sound is not sent yet. */
-  private ending = false;
-  private listening = false;
-  private taking = false;
+  private isFlushing = false;
+  private isListening = false;
+  private isRecordingWord = false;
   private mode: TalkMode = "off";
   private timer = 0;
   /** The seconds that the microphone had lost before the current utterance. */
@@ -68,26 +68,26 @@ export class VoiceState {
   ) {
     this.speaker = new Speaker(storage);
     connection.on("voice_state", (told) => {
-      this.told = told;
+      this.serverState = told;
       if (told.cut) this.release();
       this.changed.emit();
     });
-    connection.on("conversation_text", ({ part, text }) => this.take(part, text));
+    connection.on("conversation_text", ({ part, text }) => this.addText(part, text));
     connection.on("hello", () => {
       this.mode = "off";
-      this.announce();
+      this.sendMode();
       if (this.watched) this.connection.send({ type: "watch_voice", watched: true });
     });
     connection.stateChanged.on((state) => {
       if (state === "connected") return;
-      this.told = null;
+      this.serverState = null;
       this.release();
       this.changed.emit();
     });
     microphone.block.on((samples) => this.send(samples));
     microphone.changed.on(() => {
-      if (microphone.problem !== null) this.listening = this.pressed = this.taking = false;
-      this.announce();
+      if (microphone.problem !== null) this.isListening = this.isPressed = this.isRecordingWord = false;
+      this.sendMode();
       this.changed.emit();
     });
     this.speaker.changed.on(() => {
@@ -99,12 +99,12 @@ export class VoiceState {
 
   /** Whether the button is held. */
   get held(): boolean {
-    return this.pressed;
+    return this.isPressed;
   }
 
   /** Whether the page listens all the time. */
   get open(): boolean {
-    return this.listening;
+    return this.isListening;
   }
 
   get watched(): boolean {
@@ -113,7 +113,7 @@ export class VoiceState {
 
   /** Whether too much sound was lost in the current or last utterance or recording. */
   get hasGaps(): boolean {
-    return !this.listening && this.microphone.lostSeconds - this.lostBefore > MOST_LOST;
+    return !this.isListening && this.microphone.lostSeconds - this.lostBefore > MAX_LOST_SECONDS;
   }
 
   /** Whether the robot has answered since the button was last pressed; in that case it asks for a repetition itself. */
@@ -127,56 +127,56 @@ export class VoiceState {
     if (wanted) this.watching.add(who);
     else this.watching.delete(who);
     if (this.watched === before) return;
-    if (!this.watched) this.told = null;
+    if (!this.watched) this.serverState = null;
     this.connection.send({ type: "watch_voice", watched: this.watched });
   }
 
   /** Handles a press of the button: speech from now on is a command. */
   press(): void {
-    if (this.pressed) return;
-    this.pressed = true;
+    if (this.isPressed) return;
+    this.isPressed = true;
     this.isAnswered = false;
     this.lostBefore = this.microphone.lostSeconds;
     this.speaker.hush();
     this.watch(this.microphone, true);
-    this.use();
+    this.openMicrophone();
   }
 
   /** Handles the release of the button. */
   release(): void {
-    if (!this.pressed) return;
-    this.pressed = false;
-    this.ending = this.mode === "held";
+    if (!this.isPressed) return;
+    this.isPressed = false;
+    this.isFlushing = this.mode === "held";
     this.changed.emit();
     void this.microphone.flush().then(() => {
-      this.ending = false;
-      this.announce();
-      this.rest();
+      this.isFlushing = false;
+      this.sendMode();
+      this.scheduleClose();
     });
   }
 
   /** Listens all the time, or only while the button is held. */
   setOpen(open: boolean): void {
-    if (open === this.listening) return;
-    this.listening = open;
+    if (open === this.isListening) return;
+    this.isListening = open;
     this.watch(this.microphone, true);
-    if (open) this.use();
+    if (open) this.openMicrophone();
     else {
-      this.announce();
-      this.rest();
+      this.sendMode();
+      this.scheduleClose();
     }
     this.changed.emit();
   }
 
   /** Releases the button and the microphone, for example when the page is hidden. */
-  letGo(): void {
+  releaseMicrophone(): void {
     this.release();
-    if (!this.listening) this.microphone.close();
+    if (!this.isListening) this.microphone.close();
   }
 
   /** Whether the current speech is a recording of a word rather than a command. */
   get recording(): boolean {
-    return this.taking;
+    return this.isRecordingWord;
   }
 
   /**
@@ -189,20 +189,20 @@ export class VoiceState {
     clearTimeout(this.timer);
     const opened = await this.microphone.open();
     this.lostBefore = this.microphone.lostSeconds;
-    this.announce();
-    this.taking = opened && begun();
-    if (!this.taking) this.rest();
-    return this.taking;
+    this.sendMode();
+    this.isRecordingWord = opened && begun();
+    if (!this.isRecordingWord) this.scheduleClose();
+    return this.isRecordingWord;
   }
 
   /** Ends the recording; resolves once its last sound is sent. */
   async endRecord(): Promise<void> {
     await this.microphone.flush();
-    this.taking = false;
-    this.rest();
+    this.isRecordingWord = false;
+    this.scheduleClose();
   }
 
-  say(text: string): void {
+  sendCommand(text: string): void {
     this.connection.send({ type: "say_command", text });
   }
 
@@ -214,28 +214,28 @@ export class VoiceState {
 
   /** Returns the state for `window.linkwright`. */
   inspect(): object {
-    const { history, partial, told, microphone, mode, recording } = this;
+    const { history, partial, serverState, microphone, mode, recording } = this;
     const { problem, isOpen, peak } = microphone;
-    return { mode, recording, problem, isOpen, peak, partial, told, history: history.map((each) => ({ ...each })) };
+    return { mode, recording, problem, isOpen, peak, partial, serverState, history: history.map((each) => ({ ...each })) };
   }
 
-  private use(): void {
+  private openMicrophone(): void {
     clearTimeout(this.timer);
     void this.microphone.open().then((opened) => {
-      if (opened) this.rest();
+      if (opened) this.scheduleClose();
     });
-    this.announce();
+    this.sendMode();
     this.changed.emit();
   }
 
   /** Closes the microphone after a while, unless it is needed. */
-  private rest(): void {
+  private scheduleClose(): void {
     clearTimeout(this.timer);
-    if (this.pressed || this.listening || this.taking || !this.microphone.isOpen) return;
-    this.timer = window.setTimeout(() => this.microphone.close(), WARM_MS);
+    if (this.isPressed || this.isListening || this.isRecordingWord || !this.microphone.isOpen) return;
+    this.timer = window.setTimeout(() => this.microphone.close(), OPEN_AFTER_USE_MS);
   }
 
-  private announce(): void {
+  private sendMode(): void {
     const mode = this.wanted;
     if (mode === this.mode) return;
     this.mode = mode;
@@ -244,27 +244,27 @@ export class VoiceState {
 
   private get wanted(): TalkMode {
     if (!this.microphone.isOpen) return "off";
-    if (this.pressed || this.ending) return "held";
-    return this.listening ? "open" : "ready";
+    if (this.isPressed || this.isFlushing) return "held";
+    return this.isListening ? "open" : "ready";
   }
 
   private send(samples: Int16Array): void {
     this.changed.emit();
     const lost = this.microphone.lostSeconds - this.lostUntil;
     this.lostUntil = this.microphone.lostSeconds;
-    if (this.mode !== "held" && this.mode !== "open" && !this.taking) return;
+    if (this.mode !== "held" && this.mode !== "open" && !this.isRecordingWord) return;
     // The page's own speech is not a command.
     if (this.mode === "open" && this.speaker.speaking) return;
     this.connection.sendBytes(soundFrame(samples, lost));
   }
 
-  private take(part: ConversationPart, text: string): void {
+  private addText(part: ConversationPart, text: string): void {
     if (part === "response") this.isAnswered = true;
     if (part === "partial") this.partial = text;
     else {
       if (part === "text") this.partial = "";
       if (text !== "") this.history.push({ part, text });
-      if (this.history.length > MOST_KEPT) this.history.shift();
+      if (this.history.length > MAX_HISTORY) this.history.shift();
       if (part === "response") this.speaker.speak(text);
     }
     this.conversed.emit();
