@@ -5,7 +5,7 @@ import { fixXml } from "../src/scene/meshes/collada";
 import { readMesh } from "../src/scene/meshes/formats";
 import type { MeshFiles } from "../src/scene/meshes/mesh-files";
 import { MeshLibrary } from "../src/scene/meshes/mesh-library";
-import { collapseNonFinite } from "../src/scene/meshes/mesh-numbers";
+import { collapseNonFinite } from "../src/scene/meshes/non-finite";
 import type { MeshTemplate } from "../src/scene/meshes/mesh-template";
 import { MeshProgress } from "../src/state/mesh-progress";
 

@@ -4,7 +4,7 @@ import { mapPalette } from "../src/scene/displays/map-palette";
 import { nearestPoint } from "../src/scene/objects/nearest-point";
 import { cameraInImageFrame, imageZoom, projection } from "../src/scene/images/camera-projection";
 import { rgbaOf } from "../src/scene/images/image-canvas";
-import { isShownInCamera } from "../src/scene/images/seen-through";
+import { isShownInCamera } from "../src/scene/images/shown-in-camera";
 import { DisplayState } from "../src/state/displays";
 import { PropertyNode, PropertyRows } from "../src/state/properties";
 import { Vector3 } from "three";

@@ -2,7 +2,7 @@ import { PROTOCOL_VERSION, type PageMessage, type ServerMessage } from "../proto
 import { Signal } from "../signal";
 import { browserStorage } from "../storage";
 import { unpackData, type DisplayData } from "./data";
-import { isPiece, FrameAssembler } from "./pieces";
+import { isPiece, FrameAssembler } from "./frame-assembler";
 import { askForProof } from "./proof";
 import { recordingIn } from "./recording-address";
 import { unpackSamples, type SeriesSamples } from "./samples";

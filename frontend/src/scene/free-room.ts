@@ -1,7 +1,7 @@
 import type { Camera } from "three";
 import type { ViewSize } from "../state/views/camera";
 import type { Span } from "../state/views/vector";
-import { extentOf, type ScreenExtent } from "./screen-reach";
+import { extentOf, type ScreenExtent } from "./screen-extent";
 
 /** The maximum share of the canvas's width and height that may be excluded when the camera fits something into view. */
 const MAX_COVERED = 0.6;

@@ -208,6 +208,6 @@ function makeRenderer(): WebGLRenderer {
 
 /** Returns the name of the renderer from the graphics driver; empty if the browser does not reveal it. */
 function nameOfRenderer(gl: WebGLRenderingContext | WebGL2RenderingContext): string {
-  const said = gl.getExtension("WEBGL_debug_renderer_info");
-  return String(gl.getParameter(said ? said.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  const extension = gl.getExtension("WEBGL_debug_renderer_info");
+  return String(gl.getParameter(extension ? extension.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
 }

@@ -28,7 +28,7 @@ const MAX_LIGHTS = 8;
 /** The lights of a world, at their poses in the fixed frame. */
 export class WorldLights {
   readonly root = new Group();
-  private placed: { light: Light; said: LightScene }[] = [];
+  private placed: { light: Light; spec: LightScene }[] = [];
   private builtKey = "";
   private chosen: Lighting = "Camera";
   private shadowed = false;
@@ -39,8 +39,8 @@ export class WorldLights {
 
   /** Applies the properties of the display and its world. */
   style(rows: PropertyRows, scene: WorldScene): void {
-    const said = rows.text("Automatic", "Light");
-    this.chosen = said === "Studio" || said === "World" || said === "Camera" ? said : this.affordsStudio() ? "Studio" : "Soft";
+    const choice = rows.text("Automatic", "Light");
+    this.chosen = choice === "Studio" || choice === "World" || choice === "Camera" ? choice : this.affordsStudio() ? "Studio" : "Soft";
     this.shadowed = this.isLit && rows.bool(true, "Shadows") && (this.chosen === "Studio" || scene.shadows);
     const key = [this.chosen, this.shadowed, scene.revision].join();
     if (key === this.builtKey) return;
@@ -77,12 +77,12 @@ export class WorldLights {
   /** Moves the lights to the poses of their links, and fits shadows to the drawn objects. */
   place(world: Matrix4, poseOf: (link: string) => Matrix4 | null, drawn: () => Box3): void {
     if (!this.isLit) return;
-    for (const { light, said } of this.placed) {
-      const frame = said.link === null ? world : poseOf(said.link);
+    for (const { light, spec } of this.placed) {
+      const frame = spec.link === null ? world : poseOf(spec.link);
       light.visible = frame !== null;
       if (!frame) continue;
-      light.position.fromArray(said.position).applyMatrix4(frame);
-      const direction = new Vector3().fromArray(said.direction).transformDirection(frame);
+      light.position.fromArray(spec.position).applyMatrix4(frame);
+      const direction = new Vector3().fromArray(spec.direction).transformDirection(frame);
       if (light instanceof SpotLight || light instanceof DirectionalLight) light.target.position.copy(light.position).add(direction);
       if (light instanceof DirectionalLight) this.aim(light, direction, drawn);
     }
@@ -113,7 +113,7 @@ export class WorldLights {
 
   private buildStudio(): void {
     this.root.add(studioSky());
-    const said: LightScene = {
+    const spec: LightScene = {
       kind: "directional",
       link: null,
       position: [0, 0, 0],
@@ -124,26 +124,26 @@ export class WorldLights {
       fading: [1, 0, 0],
       cone: [0, 0],
     };
-    this.add(new DirectionalLight(), said);
+    this.add(new DirectionalLight(), spec);
   }
 
   private buildWorld(scene: WorldScene): void {
     const [r = 0, g = 0, b = 0] = scene.ambient;
     this.root.add(new AmbientLight(new Color(r, g, b), FULL_INTENSITY));
-    for (const said of scene.lights.slice(0, MAX_LIGHTS)) this.add(lightOf(said), said);
+    for (const spec of scene.lights.slice(0, MAX_LIGHTS)) this.add(lightOf(spec), spec);
   }
 
-  private add(light: DirectionalLight | PointLight | SpotLight, said: LightScene): void {
-    const [r = 0, g = 0, b = 0] = said.color;
+  private add(light: DirectionalLight | PointLight | SpotLight, spec: LightScene): void {
+    const [r = 0, g = 0, b = 0] = spec.color;
     light.color.setRGB(r, g, b);
-    light.intensity = FULL_INTENSITY * strength(said);
+    light.intensity = FULL_INTENSITY * strength(spec);
     const shadows = this.placed.filter((each) => each.light.castShadow).length;
-    if (this.shadowed && said.shadows && shadows < MAX_SHADOWS && !(light instanceof PointLight)) {
+    if (this.shadowed && spec.shadows && shadows < MAX_SHADOWS && !(light instanceof PointLight)) {
       castShadows(light);
     }
     this.root.add(light);
     if (!(light instanceof PointLight)) this.root.add(light.target);
-    this.placed.push({ light, said });
+    this.placed.push({ light, spec });
   }
 
   /** Aims a sun from just outside the drawn objects, so that its shadows have the highest resolution. */
@@ -167,11 +167,11 @@ function strength({ kind, range, fading }: LightScene): number {
   return Math.min(1, 1 / Math.max(constant + linear * distance + quadratic * distance ** 2, 1e-3));
 }
 
-function lightOf(said: LightScene): DirectionalLight | PointLight | SpotLight {
-  if (said.kind === "directional") return new DirectionalLight();
-  if (said.kind === "point") return new PointLight(0xffffff, 1, said.range, 0);
-  const [inner = 0, outer = 0] = said.cone;
+function lightOf(spec: LightScene): DirectionalLight | PointLight | SpotLight {
+  if (spec.kind === "directional") return new DirectionalLight();
+  if (spec.kind === "point") return new PointLight(0xffffff, 1, spec.range, 0);
+  const [inner = 0, outer = 0] = spec.cone;
   const angle = Math.min(outer > 0 ? outer / 2 : Math.PI / 4, Math.PI / 2);
   const soft = outer > 0 ? Math.min(Math.max(1 - inner / outer, 0), 1) : 0;
-  return new SpotLight(0xffffff, 1, said.range, angle, soft, 0);
+  return new SpotLight(0xffffff, 1, spec.range, angle, soft, 0);
 }

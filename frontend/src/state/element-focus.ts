@@ -1,7 +1,7 @@
 import type { RobotScene } from "../protocol";
 import { Signal } from "../signal";
 import type { ElementName } from "./description-model";
-import type { PageMemory } from "./kept";
+import type { PageMemory } from "./page-memory";
 import type { SelectionState } from "./selection";
 
 /**
@@ -25,8 +25,8 @@ export class ElementFocus {
   }
 
   /** Preserves the selected joint across reloads of the page. */
-  preserveIn(kept: PageMemory): void {
-    kept.preserve("joint", () => this.joint, (joint) => (this.joint = joint));
+  preserveIn(memory: PageMemory): void {
+    memory.preserve("joint", () => this.joint, (joint) => (this.joint = joint));
   }
 
   get current(): ElementName | null {

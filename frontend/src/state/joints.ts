@@ -1,7 +1,7 @@
 import type { Connection } from "../connection/connection";
 import type { JointControl } from "../protocol";
 import { Signal } from "../signal";
-import type { PageMemory } from "./kept";
+import type { PageMemory } from "./page-memory";
 
 /** The maximum number of joints in one message, because the server accepts messages of 64 KiB. */
 const MAX_PER_MESSAGE = 200;
@@ -32,8 +32,8 @@ export class JointsState {
   }
 
   /** Preserves across reloads of the page whether links can be dragged without Alt. */
-  preserveIn(kept: PageMemory): void {
-    kept.preserve("hands on", () => this.dragsWithoutAlt, (on) => (this.dragsWithoutAlt = on));
+  preserveIn(memory: PageMemory): void {
+    memory.preserve("hands on", () => this.dragsWithoutAlt, (on) => (this.dragsWithoutAlt = on));
   }
 
   /**

@@ -1,6 +1,6 @@
 import type { JointDetails, LinkDetails } from "../protocol";
 import type { DescriptionModel } from "./description-model";
-import type { PageMemory } from "./kept";
+import type { PageMemory } from "./page-memory";
 
 /** A link in the tree, with its parent joint. */
 export interface TreeRow {
@@ -17,8 +17,8 @@ export class LinkTreeState {
   private folded = new Set<string>();
 
   /** Preserves the folds across reloads of the page. */
-  preserveIn(kept: PageMemory): void {
-    kept.preserve("folded links", () => [...this.folded], (links) => (this.folded = new Set(links)));
+  preserveIn(memory: PageMemory): void {
+    memory.preserve("folded links", () => [...this.folded], (links) => (this.folded = new Set(links)));
   }
 
   isFolded(link: string): boolean {

@@ -33,18 +33,18 @@ export class MeshProgress {
       this.changed.emit();
     };
     const timer = setTimeout(show, SHOWN_AFTER_MS);
-    const tell = (): void => {
+    const notify = (): void => {
       if (this.shown.has(load)) this.changed.emit();
     };
     return {
       received: (bytes, total) => {
         Object.assign(load, { bytes, total });
-        tell();
+        notify();
       },
       startReading: async () => {
         load.stage = "reading";
         if (load.bytes >= LARGE_BYTES) show();
-        tell();
+        notify();
         if (this.shown.has(load)) await afterPaint();
       },
       end: () => {

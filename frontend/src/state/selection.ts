@@ -1,6 +1,6 @@
 import type { LinkScene, RobotScene } from "../protocol";
 import { Signal } from "../signal";
-import type { PageMemory } from "./kept";
+import type { PageMemory } from "./page-memory";
 
 /** An object of a display: a link, a marker, a point; `key` identifies it in the display's drawing. */
 export interface SelectedItem {
@@ -29,8 +29,8 @@ export class SelectionState {
   constructor(private readonly robots: ReadonlyMap<string, RobotScene>) {}
 
   /** Preserves the selection across reloads of the page. */
-  preserveIn(kept: PageMemory): void {
-    kept.preserve("selection", () => this.current, (items) => (this.current = items));
+  preserveIn(memory: PageMemory): void {
+    memory.preserve("selection", () => this.current, (items) => (this.current = items));
   }
 
   get items(): readonly SelectedItem[] {

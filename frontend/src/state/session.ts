@@ -14,7 +14,7 @@ import { ElementFocus } from "./element-focus";
 import { FrameStore } from "./frames";
 import { InspectState } from "./inspect";
 import { JointsState } from "./joints";
-import { PageMemory } from "./kept";
+import { PageMemory } from "./page-memory";
 import { MeshProgress } from "./mesh-progress";
 import { Modelling } from "./modelling/modelling";
 import { MonitorState } from "./monitor/monitor";

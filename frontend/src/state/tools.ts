@@ -1,7 +1,7 @@
 import type { Connection } from "../connection/connection";
 import type { PropertyValue, Tool, ToolClass } from "../protocol";
 import { Signal } from "../signal";
-import type { PageMemory } from "./kept";
+import type { PageMemory } from "./page-memory";
 import { PropertyNode, PropertyRows } from "./properties";
 
 /** A tool of the toolbar. */
@@ -45,8 +45,8 @@ export class ToolsState {
   }
 
   /** Preserves the choice of the active tool across reloads of the page. */
-  preserveIn(kept: PageMemory): void {
-    kept.preserve("tool", () => this.active?.id ?? null, (id) => (this.activeBefore = id));
+  preserveIn(memory: PageMemory): void {
+    memory.preserve("tool", () => this.active?.id ?? null, (id) => (this.activeBefore = id));
   }
 
   get current(): ToolState | null {

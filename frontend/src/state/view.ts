@@ -2,7 +2,7 @@ import type { Connection } from "../connection/connection";
 import type { Property, PropertyValue, SavedView, View, ViewClass } from "../protocol";
 import { Signal } from "../signal";
 import type { FrameStore } from "./frames";
-import type { PageMemory } from "./kept";
+import type { PageMemory } from "./page-memory";
 import { cameraInFixed, cameraInTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
 import { controllerOf } from "./views/catalog";
 import { contains, spanInTarget } from "./views/fit";
@@ -108,9 +108,9 @@ export class ViewState {
   }
 
   /** Preserves the camera across reloads of the page. */
-  preserveIn(kept: PageMemory): void {
+  preserveIn(memory: PageMemory): void {
     const read = () => ({ view: this.view, revision: this.revision, lookedAt: this.lookedAt });
-    kept.preserve("view", read, (before: ReturnType<typeof read>) => Object.assign(this, before));
+    memory.preserve("view", read, (before: ReturnType<typeof read>) => Object.assign(this, before));
   }
 
   /** Handles a restart of the program; if it shows other content, the camera starts from its default again. */
@@ -206,8 +206,8 @@ export class ViewState {
     const before = this.view;
     const inFixed = this.camera;
     const defaults = this.defaultsOf(cls);
-    const kept = before.values[TARGET_FRAME];
-    this.view = { ...before, cls, values: kept === undefined ? defaults : { ...defaults, [TARGET_FRAME]: kept } };
+    const targetFrame = before.values[TARGET_FRAME];
+    this.view = { ...before, cls, values: targetFrame === undefined ? defaults : { ...defaults, [TARGET_FRAME]: targetFrame } };
     const camera = cameraInTarget(inFixed, this.target);
     this.update(this.controller.mimic({ cls: before.cls, values: before.values, camera }));
   }

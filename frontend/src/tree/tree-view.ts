@@ -1,6 +1,6 @@
 import { coalesced, h } from "../dom";
 import { Signal } from "../signal";
-import type { PageMemory } from "../state/kept";
+import type { PageMemory } from "../state/page-memory";
 import { ColumnSplitter } from "./column-splitter";
 import type { TreeItem } from "./tree-item";
 import { TreeRow } from "./tree-row";
@@ -59,9 +59,9 @@ export class TreeView {
   }
 
   /** Preserves which rows are unfolded and selected across reloads of the page. */
-  preserveIn(kept: PageMemory, name: string): void {
+  preserveIn(memory: PageMemory, name: string): void {
     const read = () => ({ expansion: [...this.expansion], selected: this.selectedKey });
-    kept.preserve(`tree ${name}`, read, ({ expansion, selected }: ReturnType<typeof read>) => {
+    memory.preserve(`tree ${name}`, read, ({ expansion, selected }: ReturnType<typeof read>) => {
       for (const [key, expanded] of expansion) this.expansion.set(key, expanded);
       this.scrollTo = this.selectedKey = selected;
     });

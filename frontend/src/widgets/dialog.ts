@@ -89,14 +89,14 @@ export function showNotice(title: string, text: string, lines: readonly string[]
 }
 
 /** Asks for a name. */
-export function askName(title: string, label: string, value: string, take: (name: string) => void): void {
+export function askName(title: string, label: string, value: string, rename: (name: string) => void): void {
   const field = h("input", { class: "field wide", aria: { label } });
   field.value = value;
   field.maxLength = 200;
   const accept = (): boolean => {
     const name = field.value.trim();
     if (name === "") return false;
-    if (name !== value) take(name);
+    if (name !== value) rename(name);
     return true;
   };
   const dialog = new Dialog(

@@ -6,7 +6,7 @@ import { isSameElement } from "../../state/element-focus";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { PanZoom } from "../../widgets/pan-zoom";
-import { holdWhileVisible } from "../../widgets/when-seen";
+import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { currentModel } from "./current-model";
 

@@ -6,7 +6,7 @@ import { visibleRows, LinkTreeState, type TreeRow } from "../../state/link-tree"
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { VirtualRows } from "../../widgets/virtual-rows";
-import { holdWhileVisible } from "../../widgets/when-seen";
+import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { currentModel } from "./current-model";
 

@@ -5,7 +5,7 @@ import { EXPANDED, type DescriptionModel } from "../../state/description-model";
 import { isSameElement } from "../../state/element-focus";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import { holdWhileVisible } from "../../widgets/when-seen";
+import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { placeText, shortPath, shortPlace } from "../place";
 import { currentModel } from "./current-model";

@@ -8,7 +8,7 @@ import { strings } from "../../strings";
 import { formatNumber, parseNumber } from "../../tree/numbers";
 import { choice } from "../../widgets/controls";
 import { UnitSwitch } from "../../widgets/unit-switch";
-import { holdWhileVisible } from "../../widgets/when-seen";
+import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { shortPath } from "../place";
 import { EditOutcome } from "./edit-outcome";

@@ -5,7 +5,7 @@ import { cellTexts, COLUMNS, sortJoints, type Column } from "../../state/joint-t
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { UnitSwitch } from "../../widgets/unit-switch";
-import { holdWhileVisible } from "../../widgets/when-seen";
+import { holdWhileVisible } from "../../widgets/visibility";
 import { currentModel } from "../description/current-model";
 import type { Panel } from "../panel";
 

@@ -2,7 +2,7 @@ import { button, h } from "../../dom";
 import type { NavigationCommand } from "../../protocol";
 import type { NavigationState } from "../../state/monitor/navigation";
 import { strings } from "../../strings";
-import { onVisibilityChange } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 
 type Row = "navigation" | "localization" | "goal" | "eta" | "distance" | "taken" | "recoveries";

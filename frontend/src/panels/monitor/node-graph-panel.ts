@@ -4,7 +4,7 @@ import { drawnGraph, type GraphMode, type GraphOptions, type GraphVertex } from 
 import type { NodeGraphState } from "../../state/monitor/node-graph";
 import { strings } from "../../strings";
 import { choice, tickBox } from "../../widgets/controls";
-import { onVisibilityChange } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { NodeGraphDrawing } from "./node-graph-drawing";
 

@@ -4,7 +4,7 @@ import type { ParametersState } from "../../state/monitor/parameters";
 import { strings } from "../../strings";
 import { textField } from "../../widgets/controls";
 import { saveText } from "../../widgets/save-file";
-import { onVisibilityChange } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { ParameterLine } from "./parameter-row";
 

@@ -5,7 +5,7 @@ import { valueText } from "../../state/monitor/field-text";
 import type { TeleopState } from "../../state/monitor/teleop";
 import { strings } from "../../strings";
 import { choice, numberField, tickBox } from "../../widgets/controls";
-import { onVisibilityChange } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { TeleopGamepad } from "./teleop-gamepad";
 import { TeleopPad } from "./teleop-pad";

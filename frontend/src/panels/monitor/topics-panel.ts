@@ -3,7 +3,7 @@ import type { TopicRow } from "../../protocol";
 import type { TopicsState } from "../../state/monitor/topics";
 import { strings } from "../../strings";
 import { textField, tickBox } from "../../widgets/controls";
-import { onVisibilityChange } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { TopicLine } from "./topic-row";
 

@@ -45,7 +45,7 @@ export class ScenePanel implements Panel {
     const simulation = new SimulationBar(session.simulation, session.modelling, commands);
     const form = new ArgumentFormCard(session.connection);
     this.notices.append(simulation.element, notice.element, banner.element, form.element);
-    const told = [
+    const notices = [
       new ToolNotice(session.tools),
       new GoalNotice(session.monitor.navigation),
       new FrameNotice(session),
@@ -54,7 +54,7 @@ export class ScenePanel implements Panel {
       new MeshNotice(session.meshProgress),
       new VoiceNotice(session.voice, session.words),
     ];
-    this.column.element.append(inspect.element, card.element, ...told.map((each) => each.element));
+    this.column.element.append(inspect.element, card.element, ...notices.map((each) => each.element));
     this.box = h(
       "div",
       { class: "scene-box" },

@@ -2,7 +2,7 @@ import { button, h } from "../../dom";
 import { icon } from "../../icons";
 import type { SyncMode, TimeControlState, Times } from "../../state/time";
 import { strings } from "../../strings";
-import { onVisibilityChange } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 
 /**

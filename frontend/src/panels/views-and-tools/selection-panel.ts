@@ -5,7 +5,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import type { TreeItem } from "../../tree/tree-item";
 import { TreeView } from "../../tree/tree-view";
-import { onVisibilityChange } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 
 /** The interval at which values of the selection are read while they change. */

@@ -5,7 +5,7 @@ import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
 import { strings } from "../../strings";
 import { choice, textField, tickBox } from "../../widgets/controls";
-import { onVisibilityChange } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { enrolHereButton, proposesEnrolling } from "./enrol-here";
 import { LevelMeter } from "./level-meter";

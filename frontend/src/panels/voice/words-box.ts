@@ -119,8 +119,8 @@ export class WordsBox {
     this.here.hidden = takesHere === null;
     if (takesHere === null) return;
     const [next] = missingHere;
-    const said = all.length - missingHere.length;
-    const progress = all.length === 0 ? texts.hereNone : next ? texts.hereDone(said, all.length) : texts.hereAll;
+    const doneCount = all.length - missingHere.length;
+    const progress = all.length === 0 ? texts.hereNone : next ? texts.hereDone(doneCount, all.length) : texts.hereAll;
     if (this.hereDone.textContent !== progress) this.hereDone.textContent = progress;
     this.hereNote.textContent = texts.here(enough);
     if (!this.focusDue || file === "") return;

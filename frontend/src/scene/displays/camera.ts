@@ -6,7 +6,7 @@ import { cameraInImageFrame, imageZoom, projection } from "../images/camera-proj
 import { OwnPanel } from "../images/own-panel";
 import { ImageCanvas } from "../images/image-canvas";
 import { SceneImage } from "../images/scene-image";
-import { isShownInCamera } from "../images/seen-through";
+import { isShownInCamera } from "../images/shown-in-camera";
 import { dataPose } from "../pose";
 import type { Drawing, DrawingContext, DrawnScene } from "./drawing";
 

@@ -29,12 +29,12 @@ export class RobotModelDrawing implements Drawing {
   constructor(private readonly context: DrawingContext) {
     const { session, display } = context;
     this.root.matrixAutoUpdate = false;
-    const take = (robot: RobotScene | undefined): void => {
+    const setRobot = (robot: RobotScene | undefined): void => {
       if (robot?.display === display.id) this.setRobot(robot);
     };
     this.contrast = session.inspect.current.contrast;
-    this.unsubscribe = [session.robotChanged.on(take), session.inspect.changed.on(() => this.inspectChanged()), session.comparison.changed.on(() => this.recolor())];
-    take(session.robots.get(display.id));
+    this.unsubscribe = [session.robotChanged.on(setRobot), session.inspect.changed.on(() => this.inspectChanged()), session.comparison.changed.on(() => this.recolor())];
+    setRobot(session.robots.get(display.id));
   }
 
   /** The number of visuals drawn now. */

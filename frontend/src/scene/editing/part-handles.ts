@@ -163,8 +163,8 @@ export class PartHandles {
     // Along the part's own axes, round the distance to the grid rather than the position.
     const own = new Quaternion().setFromRotationMatrix(before);
     const way = at.sub(new Vector3().fromArray(from.xyz)).applyQuaternion(own.clone().invert());
-    const kept = new Vector3(...way.toArray().map((part) => snap(part, step))).applyQuaternion(own);
-    return { xyz: roundChanged(kept.toArray().map((part, i) => part + (from.xyz[i] ?? 0)), from.xyz, 0), rpy: from.rpy };
+    const offset = new Vector3(...way.toArray().map((part) => snap(part, step))).applyQuaternion(own);
+    return { xyz: roundChanged(offset.toArray().map((part, i) => part + (from.xyz[i] ?? 0)), from.xyz, 0), rpy: from.rpy };
   }
 
   private release(event: ToolEvent): void {

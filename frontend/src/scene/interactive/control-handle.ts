@@ -136,7 +136,7 @@ function facingOrientation(own: Quaternion, camera: Camera, reference: Matrix4):
   const up = new Vector3(0, 1, 0).applyQuaternion(view);
   const toView = new Quaternion().setFromUnitVectors(new Vector3(1, 0, 0).applyQuaternion(own), forward);
   const z = new Vector3(0, 0, 1).applyQuaternion(own).applyQuaternion(toView);
-  const upright = new Quaternion().setFromUnitVectors(z.projectOnPlane(forward).normalize(), up);
+  const toUpright = new Quaternion().setFromUnitVectors(z.projectOnPlane(forward).normalize(), up);
   const frame = new Quaternion().setFromRotationMatrix(reference);
-  return frame.invert().multiply(upright.multiply(toView));
+  return frame.invert().multiply(toUpright.multiply(toView));
 }

@@ -11,7 +11,7 @@ import {
 import { strings } from "../../strings";
 import { mapsOf, type Surface } from "../materials";
 import { MeshError } from "./mesh-error";
-import { collapseNonFinite, nonFiniteProblem, type NonFiniteCounts } from "./mesh-numbers";
+import { collapseNonFinite, nonFiniteProblem, type NonFiniteCounts } from "./non-finite";
 
 /** A material of a mesh file. */
 export interface OwnMaterial {

@@ -105,14 +105,14 @@ function weld({ positions, normals, index }: Triangles, simplifier: Simplifier):
 
 /** Returns the triangles without those that have two equal corners. */
 function withoutDegenerate(index: Uint32Array): Uint32Array {
-  let kept = 0;
+  let length = 0;
   for (let i = 0; i + 2 < index.length; i += 3) {
     const [a = 0, b = 0, c = 0] = index.subarray(i, i + 3);
     if (a === b || b === c || c === a) continue;
-    index.set([a, b, c], kept);
-    kept += 3;
+    index.set([a, b, c], length);
+    length += 3;
   }
-  return index.slice(0, kept);
+  return index.slice(0, length);
 }
 
 function boundingSphere(positions: Float32Array): [number, number, number, number] {

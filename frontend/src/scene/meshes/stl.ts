@@ -1,7 +1,7 @@
 import { BufferAttribute, BufferGeometry } from "three";
 import { strings } from "../../strings";
 import { countText, MeshError } from "./mesh-error";
-import { collapseNonFinite, nonFiniteProblem } from "./mesh-numbers";
+import { collapseNonFinite, nonFiniteProblem } from "./non-finite";
 import type { MeshTemplate } from "./mesh-template";
 import { readAsciiStl } from "./stl-text";
 

@@ -17,7 +17,7 @@ import { Solids, type SolidKind } from "./solids";
 /** Called once for each mesh of each link; `error` is null if all of it is drawn. */
 export type MeshReport = (link: string, url: string, error: string | null) => void;
 
-type InsteadOf = (link: string) => LinkOverride | null;
+type OverrideOf = (link: string) => LinkOverride | null;
 
 /** The links and joints of a robot, or of all models of a world. */
 type DrawnLinks = Pick<RobotScene, "links" | "joints">;
@@ -124,13 +124,13 @@ export class RobotDrawing {
   }
 
   /**
-   * Applies the display's properties. `contrast` draws collisions over pale visuals; `instead` returns the colours that
+   * Applies the display's properties. `contrast` draws collisions over pale visuals; `overrideOf` returns the colours that
    * replace those of a link.
    */
-  style(rows: PropertyRows, contrast: boolean, lighting: Lighting = "Camera", instead: InsteadOf = () => null): void {
+  style(rows: PropertyRows, contrast: boolean, lighting: Lighting = "Camera", overrideOf: OverrideOf = () => null): void {
     this.pool.lighting = lighting;
     this.solids.isSoft = this.moving.isSoft = lighting === "Soft";
-    this.pool.repaint(() => this.styleLinks(rows, contrast, instead));
+    this.pool.repaint(() => this.styleLinks(rows, contrast, overrideOf));
     this.extras.style(rows);
   }
 
@@ -220,7 +220,7 @@ export class RobotDrawing {
     this.pool.dispose();
   }
 
-  private styleLinks(rows: PropertyRows, contrast: boolean, instead: InsteadOf): void {
+  private styleLinks(rows: PropertyRows, contrast: boolean, overrideOf: OverrideOf): void {
     const own = new Map(rows.find("Links")?.children.map((row) => [row.name, row]));
     const alpha = rows.number(1, "Alpha");
     const visual = rows.bool(true, "Visual Enabled");
@@ -236,7 +236,7 @@ export class RobotDrawing {
         alpha: alpha * (typeof linkAlpha === "number" ? linkAlpha : 1),
         trail: child("Show Trail") === true,
         contrast,
-        override: instead(name),
+        override: overrideOf(name),
       });
     }
   }

@@ -120,18 +120,18 @@ export class ShapeDrawing {
   }
 
   /**
-   * Applies materials; `alpha` includes that of the robot and the link, and `lost` means RViz's white of links without
+   * Applies materials; `alpha` includes that of the robot and the link, and `isLost` means RViz's white of links without
    * a transform.
    *
-   * @param instead - replaces all colours and textures.
+   * @param override - replaces all colours and textures.
    */
-  paint(pool: MaterialPool, alpha: number, lost: boolean, instead: LinkOverride | null = null): void {
+  paint(pool: MaterialPool, alpha: number, isLost: boolean, override: LinkOverride | null = null): void {
     for (const { mesh, own } of this.parts) {
-      const materials = own.map((each) => (lost ? errorMaterial : pool.get(this.look(each, alpha, instead))));
+      const materials = own.map((each) => (isLost ? errorMaterial : pool.get(this.look(each, alpha, override))));
       const [only = errorMaterial] = materials;
       mesh.material = materials.length === 1 ? only : materials;
     }
-    this.batched = lost || pool.isLit ? null : this.asSolid(instead, alpha);
+    this.batched = isLost || pool.isLit ? null : this.asSolid(override, alpha);
     for (const { mesh } of this.parts) {
       if (this.batched) {
         mesh.layers.disable(0);
@@ -270,10 +270,10 @@ export class ShapeDrawing {
     return mesh;
   }
 
-  private asSolid(instead: LinkOverride | null, alpha: number): Solid | null {
+  private asSolid(override: LinkOverride | null, alpha: number): Solid | null {
     const kind = solidKind(this.shape.kind);
     const [part] = this.parts;
-    const look = this.look(null, alpha, instead);
+    const look = this.look(null, alpha, override);
     if (kind === null || !part || look.map || look.alpha < OPAQUE_FROM) return null;
     return {
       kind,
@@ -294,8 +294,8 @@ export class ShapeDrawing {
    * one, a primitive or STL is RViz's red, and another mesh the grey that RViz's mesh reader sets. Only the URDF sets
    * the opacity of a part: RViz does not read it from mesh files, where exporters often write it wrongly.
    */
-  private look(own: OwnMaterial | null, alpha: number, instead: LinkOverride | null): Look {
-    if (instead) return { color: instead.color, map: null, vertexColors: false, alpha, doubleSided: true, behind: instead.behind === true };
+  private look(own: OwnMaterial | null, alpha: number, override: LinkOverride | null): Look {
+    if (override) return { color: override.color, map: null, vertexColors: false, alpha, doubleSided: true, behind: override.behind === true };
     const { kind, repaints } = this.shape;
     const doubleSided = kind === "mesh";
     const behind = kind === "plane";

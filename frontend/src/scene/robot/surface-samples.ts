@@ -39,19 +39,19 @@ function sampleSurface(geometry: BufferGeometry): SurfaceSamples {
   const count = Math.floor((index ?? positions).count / 3);
   const sums = new Float64Array(count);
   const triangle = new Triangle();
-  const take = (i: number): Triangle => {
+  const triangleAt = (i: number): Triangle => {
     const [a, b, c] = [3 * i, 3 * i + 1, 3 * i + 2].map((at) => index?.getX(at) ?? at) as [number, number, number];
     triangle.setFromAttributeAndIndices(positions, a, b, c);
     return triangle;
   };
   let area = 0;
-  for (let i = 0; i < count; i++) sums[i] = area += take(i).getArea() || 0;
+  for (let i = 0; i < count; i++) sums[i] = area += triangleAt(i).getArea() || 0;
   const points = new Float32Array(area > 0 ? 3 * POINTS : 0);
   const [point, side] = [new Vector3(), new Vector3()];
   for (let n = 0, i = 0; 3 * n < points.length; n++) {
     const wanted = ((n + 0.5) / POINTS) * area;
     while (i < count - 1 && (sums[i] ?? area) < wanted) i++;
-    const { a, b, c } = take(i);
+    const { a, b, c } = triangleAt(i);
     const [u, v] = [(n * STEP_A) % 1, (n * STEP_B) % 1];
     const isBeyond = u + v > 1;
     point.copy(a).addScaledVector(side.subVectors(b, a), isBeyond ? 1 - u : u);

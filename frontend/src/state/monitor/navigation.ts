@@ -1,5 +1,5 @@
 import type { Connection } from "../../connection/connection";
-import type { GoalOutcome, NavigationCommand, NavigationState as Told } from "../../protocol";
+import type { GoalOutcome, NavigationCommand, NavigationState as ServerState } from "../../protocol";
 import { Signal } from "../../signal";
 
 /** The state of nav2, which is requested only while the panel is visible. */
@@ -8,15 +8,15 @@ export class NavigationState {
   /** A goal failed, or another was accepted. */
   readonly outcomeChanged = new Signal<GoalOutcome>();
   /** The last state; null until the server has reported one. */
-  lastState: Told | null = null;
+  lastState: ServerState | null = null;
   private opened = false;
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
       if (this.opened) this.sendWatch();
     });
-    connection.on("navigation_state", (told) => {
-      this.lastState = told;
+    connection.on("navigation_state", (state) => {
+      this.lastState = state;
       this.changed.emit();
     });
     connection.on("goal_outcome", (outcome) => this.outcomeChanged.emit(outcome));

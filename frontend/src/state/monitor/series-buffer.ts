@@ -76,10 +76,10 @@ export class SeriesBuffer {
     if (needed <= this.numbers.length) return;
     if (needed > this.most) {
       // Drop half of them, so that this happens rarely.
-      const kept = Math.min(this.count, Math.max(0, (this.most >> 1) - more));
-      for (const array of [this.received, this.stamps, this.numbers]) array.copyWithin(0, this.count - kept, this.count);
-      this.count = kept;
-      if (kept + more <= this.numbers.length) return;
+      const remaining = Math.min(this.count, Math.max(0, (this.most >> 1) - more));
+      for (const array of [this.received, this.stamps, this.numbers]) array.copyWithin(0, this.count - remaining, this.count);
+      this.count = remaining;
+      if (remaining + more <= this.numbers.length) return;
     }
     const capacity = Math.max(this.count + more, Math.min(this.most, this.numbers.length * 2));
     this.received = resized(this.received, capacity);

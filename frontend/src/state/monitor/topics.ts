@@ -49,8 +49,8 @@ export class TopicsState {
   watch(measured: Iterable<string>, opened: Iterable<string>): void {
     this.measured = [...measured];
     this.opened = [...opened];
-    const kept = new Set([...this.measured, ...this.opened]);
-    for (const topic of this.traffic.keys()) if (!kept.has(topic)) this.traffic.delete(topic);
+    const watched = new Set([...this.measured, ...this.opened]);
+    for (const topic of this.traffic.keys()) if (!watched.has(topic)) this.traffic.delete(topic);
     for (const topic of this.messages.keys()) if (!this.opened.includes(topic)) this.messages.delete(topic);
     this.sendWatch();
     this.figuresChanged.emit();

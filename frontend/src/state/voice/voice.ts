@@ -1,5 +1,5 @@
 import type { Connection } from "../../connection/connection";
-import { MOST_LOST_SAMPLES, SOUND_KIND, SOUND_RATE, type ConversationPart, type TalkMode, type VoiceState as Told } from "../../protocol";
+import { MOST_LOST_SAMPLES, SOUND_KIND, SOUND_RATE, type ConversationPart, type TalkMode, type VoiceState as ServerState } from "../../protocol";
 import { Signal } from "../../signal";
 import type { TextStorage } from "../../storage";
 import { Microphone } from "./microphone";
@@ -45,7 +45,7 @@ export class VoiceState {
   /** The text recognised so far of the current utterance. */
   partial = "";
   /** The server's state; null while it is not requested. */
-  serverState: Told | null = null;
+  serverState: ServerState | null = null;
   readonly speaker: Speaker;
   private readonly watching = new Set<object>();
   private isPressed = false;
@@ -67,9 +67,9 @@ export class VoiceState {
     readonly microphone: Microphone = new Microphone(),
   ) {
     this.speaker = new Speaker(storage);
-    connection.on("voice_state", (told) => {
-      this.serverState = told;
-      if (told.cut) this.release();
+    connection.on("voice_state", (state) => {
+      this.serverState = state;
+      if (state.cut) this.release();
       this.changed.emit();
     });
     connection.on("conversation_text", ({ part, text }) => this.addText(part, text));

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { isPiece, FrameAssembler } from "../src/connection/pieces";
+import { isPiece, FrameAssembler } from "../src/connection/frame-assembler";
 
 function piece(number: number, offset: number, length: number, bytes: number[]): ArrayBuffer {
   const { buffer } = new Uint8Array([...new Uint8Array(new Uint32Array([4, number, offset, length]).buffer), ...bytes]);

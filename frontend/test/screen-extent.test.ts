@@ -1,6 +1,6 @@
 import { OrthographicCamera, PerspectiveCamera } from "three";
 import { expect, test } from "vitest";
-import { extentOf } from "../src/scene/screen-reach";
+import { extentOf } from "../src/scene/screen-extent";
 
 const CANVAS = { width: 800, height: 400 };
 const BOX = { min: [-1, -1, -1], max: [1, 1, 1] } as const;
