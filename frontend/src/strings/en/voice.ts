@@ -1,10 +1,10 @@
-/** Words of the Voice panel. */
+/** Texts of the Voice panel. */
 export const voice = {
   panel: "Voice",
   talk: "Talk to the robot",
   talkHint: "Hold to talk to the robot (V)",
   talkWithKey: "Hold to talk (V)",
-  talkKey: "hold: talk to the robot",
+  talkKey: "Hold: talk to the robot",
   open: "Open listening",
   openHint: "Listen all the time, not only while the button is held. The speech of others may then be taken as a command.",
   level: "Level of the microphone",
@@ -28,7 +28,7 @@ export const voice = {
   anyVoice: "by language",
   noVoices: "This browser has no voices.",
   problems: {
-    denied: "The microphone is not allowed. Allow it for this page: use the icon left of the address, or the browser's settings.",
+    denied: "This page may not use the microphone. Allow it for this page: use the icon left of the address, or the browser's settings.",
     none: "No microphone was found. Connect one and try again.",
     busy: "The microphone could not be started. Another program may be using it.",
     lost: "The microphone was disconnected. Connect it and try again.",
@@ -60,7 +60,7 @@ export const voice = {
     name: "Word",
     remove: (name: string): string => `Delete ${name}`,
     importFile: "Import",
-    importHint: "Import the words of a file",
+    importHint: "Import the words from a file",
     exportFile: "Export",
     exportHint: "Save the words as a file",
     keptIn: (file: string): string => `Stored in ${file}`,
