@@ -2,7 +2,7 @@ import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import type { Connection } from "../src/connection/connection";
 import type { ServerMessage } from "../src/protocol";
 import { Signal } from "../src/signal";
-import type { Reduced } from "../src/state/slow-line";
+import type { Reduced } from "../src/state/slow-connection";
 import { Slowness } from "../src/state/slowness";
 
 beforeEach(() => {

@@ -2,7 +2,7 @@ import { Box3 } from "three";
 import type { ViewState } from "../state/view";
 import type { Drawing } from "./displays/drawing";
 import { MapDrawing } from "./displays/map";
-import { spanOf } from "./first-look";
+import { spanOf } from "./initial-view";
 import type { FreeRoom } from "./free-room";
 
 /** Selects the windows of phones. A scale from a file, in pixels per metre, would cut off most of a map there. */

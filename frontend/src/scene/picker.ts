@@ -3,7 +3,7 @@ import type { Session } from "../state/session";
 import type { SelectedItem, SelectionMode } from "../state/selection";
 import { add, scale, type Span, type Vector } from "../state/views/vector";
 import { DepthMap } from "./depth-map";
-import { spanOf } from "./first-look";
+import { spanOf } from "./initial-view";
 import type { Drawing } from "./displays/drawing";
 import { PICKABLE } from "./layers";
 import type { DescriptionRow, Hit } from "./picking";

@@ -13,7 +13,7 @@ import { WorldDrawing } from "./displays/world";
 import { Backdrop } from "./backdrop";
 import { Flash } from "./flash";
 import { FocalShape } from "./focal-shape";
-import { lookFirst, spanOf } from "./first-look";
+import { setInitialView, spanOf } from "./initial-view";
 import { FreeRoom } from "./free-room";
 import { FINEST, FrameLoop, type Detail } from "./frame-loop";
 import { frameMaps } from "./map-look";
@@ -275,7 +275,7 @@ export class Stage {
     }
     this.robotSettled ||= settled && [...this.robots(), ...this.worlds()].some((each) => each.hasPose);
     if (settled && this.session.robot !== null) this.placelessSince ??= now;
-    this.lookFirst(settled);
+    this.setInitialView(settled);
     const ownLight = this.worlds().find((world) => world.ownLight)?.ownLight ?? this.robotLight.update(this.worlds().length > 0 ? "Camera" : lighting, this.robots(), this.backgroundColor);
     this.backdrop.root.visible = this.session.displays.hasBackdrop && !hasOwnBackground(ownLight);
     this.viewport.light(ownLight);
@@ -300,11 +300,11 @@ export class Stage {
   }
 
   /** Places the camera if no user has: in front of the robot's visible parts, or into a world once it is complete. */
-  private lookFirst(settled: boolean): void {
+  private setInitialView(settled: boolean): void {
     const { view } = this.session;
     const [robots, [world]] = [this.robots(), this.worlds()];
     if (robots.length === 0 && world?.hasPose) {
-      if (settled) lookFirst(world, view, this.viewport.size);
+      if (settled) setInitialView(world, view, this.viewport.size);
     } else {
       const seen = robots.flatMap((robot) => robot.visibleKey || []).join(";");
       const fits = view.awaitsFit(seen);

@@ -23,7 +23,7 @@ import { RecordingControl } from "./recording";
 import type { SceneMenu } from "./scene-menu";
 import { SelectionState } from "./selection";
 import { SimulationState } from "./simulation";
-import { SlowLine } from "./slow-line";
+import { SlowConnection } from "./slow-connection";
 import { Slowness } from "./slowness";
 import { TimeControlState } from "./time";
 import { TimelineState } from "./timeline";
@@ -49,7 +49,7 @@ export class Session {
   readonly recording: RecordingControl;
   readonly comparison: ComparisonState;
   readonly data: DisplayDataStore;
-  readonly slowLine: SlowLine;
+  readonly slowConnection: SlowConnection;
   readonly slowness: Slowness;
   readonly meshProgress = new MeshProgress();
   readonly drawingPace = new DrawingPace();
@@ -83,8 +83,8 @@ export class Session {
     this.recording = new RecordingControl(connection);
     this.comparison = new ComparisonState(connection);
     this.data = new DisplayDataStore(connection);
-    this.slowLine = new SlowLine(this.data);
-    this.slowness = new Slowness(this.slowLine, this.drawingPace, connection);
+    this.slowConnection = new SlowConnection(this.data);
+    this.slowness = new Slowness(this.slowConnection, this.drawingPace, connection);
     this.simulation = new SimulationState(connection);
     this.modelling = new Modelling(connection, browserStorage());
     this.editing = new EditingState(connection, browserStorage());

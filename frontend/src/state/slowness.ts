@@ -1,7 +1,7 @@
 import type { Connection } from "../connection/connection";
 import { Signal } from "../signal";
 import type { DrawingPace } from "./drawing-pace";
-import type { SlowLine } from "./slow-line";
+import type { SlowConnection } from "./slow-connection";
 
 /** The cause of a reduced data rate: the drawing of the page, the program, or the connection between them. */
 export type SlowCause = "page" | "program" | "line";
@@ -23,12 +23,12 @@ export class Slowness {
   private isProgramLate = false;
 
   constructor(
-    private readonly slowLine: Pick<SlowLine, "changed" | "reduced">,
+    private readonly slowConnection: Pick<SlowConnection, "changed" | "reduced">,
     private readonly pace: Pick<DrawingPace, "isSlow">,
     connection: Connection,
     private readonly now: () => number = () => performance.now(),
   ) {
-    slowLine.changed.on(() => this.startOrStop());
+    slowConnection.changed.on(() => this.startOrStop());
     connection.on("program_is_late", ({ late }) => {
       this.isProgramLate = late;
       this.changed.emit();
@@ -42,7 +42,7 @@ export class Slowness {
   }
 
   private startOrStop(): void {
-    const wanted = this.slowLine.reduced.length > 0;
+    const wanted = this.slowConnection.reduced.length > 0;
     if (wanted === (this.timer !== undefined)) return;
     clearTimeout(this.timer);
     this.timer = undefined;

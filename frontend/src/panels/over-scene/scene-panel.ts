@@ -12,7 +12,7 @@ import { DiagnosticsBanner } from "./diagnostics-banner";
 import { FrameNotice } from "./frame-notice";
 import { GoalNotice } from "./goal-notice";
 import { InspectMenu } from "./inspect-menu";
-import { LineNotice } from "./line-notice";
+import { SlowNotice } from "./slow-notice";
 import { MeshNotice } from "./mesh-notice";
 import { OrientationSign } from "./orientation-sign";
 import { OwnerNotice } from "./owner-notice";
@@ -49,7 +49,7 @@ export class ScenePanel implements Panel {
       new ToolNotice(session.tools),
       new GoalNotice(session.monitor.navigation),
       new FrameNotice(session),
-      new LineNotice(session),
+      new SlowNotice(session),
       new OwnerNotice(session),
       new MeshNotice(session.meshProgress),
       new VoiceNotice(session.voice, session.words),

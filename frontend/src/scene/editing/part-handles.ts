@@ -6,7 +6,7 @@ import { snap } from "../../state/modelling/snapping";
 import type { Session } from "../../state/session";
 import { RobotModelDrawing } from "../displays/robot-model";
 import { Gizmo } from "../modelling/gizmo";
-import { spanOf } from "../first-look";
+import { spanOf } from "../initial-view";
 import { framePose, poseMatrix } from "../pose";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";

@@ -1,9 +1,9 @@
 import { expect, it, vi } from "vitest";
 import type { DisplayData } from "../src/connection/data";
-import { causeOf } from "../src/panels/over-scene/line-notice";
+import { causeOf } from "../src/panels/over-scene/slow-notice";
 import { Signal } from "../src/signal";
 import type { DisplayDataStore } from "../src/state/display-data";
-import { SlowLine } from "../src/state/slow-line";
+import { SlowConnection } from "../src/state/slow-connection";
 
 vi.mock("../src/strings", () => ({ strings: {} }));
 
@@ -19,7 +19,7 @@ function cloud(step: number): DisplayData {
 it("tells what is thinned and how often it comes, until it comes whole again", () => {
   const data = store();
   let now = 0;
-  const line = new SlowLine(data as unknown as DisplayDataStore, () => now);
+  const line = new SlowConnection(data as unknown as DisplayDataStore, () => now);
   const changed = vi.fn();
   line.changed.on(changed);
   data.received.emit(cloud(1));
@@ -33,7 +33,7 @@ it("tells what is thinned and how often it comes, until it comes whole again", (
 
 it("forgets what is drawn no more", () => {
   const data = store();
-  const line = new SlowLine(data as unknown as DisplayDataStore, () => 0);
+  const line = new SlowConnection(data as unknown as DisplayDataStore, () => 0);
   data.received.emit(cloud(2));
   expect(line.reduced[0]?.rate).toBeNull();
   data.removed.emit({ display: "cloud", key: null });
@@ -42,7 +42,7 @@ it("forgets what is drawn no more", () => {
 
 it("does not tell of images that nobody sees a difference in", () => {
   const data = store();
-  const line = new SlowLine(data as unknown as DisplayDataStore, () => 0);
+  const line = new SlowConnection(data as unknown as DisplayDataStore, () => 0);
   const image = (quality: number): DisplayData["content"] => ({
     kind: "image_frame", width: 64, height: 48, columns: 64, rows: 48, encoding: "file", data: new Uint8Array(9), camera: null, quality,
   });

@@ -14,8 +14,8 @@ const SHOWS_ROBOTS = "robots";
 const DEFAULT_FOCAL_DISTANCE = 5;
 const MIN_FOCAL_DISTANCE = 0.5;
 
-/** The part of a world that the first look needs. */
-export interface FirstLookWorld {
+/** The part of a world that the initial view needs. */
+export interface InitialViewWorld {
   readonly hasRobots: boolean;
   extents(): { robots: Box3; world: Box3 };
   cameraOfFile(): Matrix4 | null;
@@ -27,7 +27,7 @@ export interface FirstLookWorld {
  * Places a camera that no user has placed: where the world's file specifies it; else before the robots, with their
  * surroundings; or, while there are no robots or they have fallen out of the world, where the whole world is visible.
  */
-export function lookFirst(world: FirstLookWorld, view: ViewState, size: ViewSize): void {
+export function setInitialView(world: InitialViewWorld, view: ViewState, size: ViewSize): void {
   if (!view.awaitsFit(world.hasRobots ? SHOWS_ROBOTS : SHOWS_WORLD)) return;
   const camera = world.cameraOfFile();
   if (camera) {
@@ -41,7 +41,7 @@ export function lookFirst(world: FirstLookWorld, view: ViewState, size: ViewSize
 }
 
 /** Returns the values of an Orbit view that looks like a camera of the world's file, without its roll. */
-function orbitFromCamera(world: FirstLookWorld, camera: Matrix4): ViewValues {
+function orbitFromCamera(world: InitialViewWorld, camera: Matrix4): ViewValues {
   const eye = new Vector3().setFromMatrixPosition(camera);
   const direction = new Vector3(1, 0, 0).transformDirection(camera);
   const hit = world.pick(rayFrom(eye, direction))?.distance ?? (direction.z < 0 && eye.z > 0 ? -eye.z / direction.z : DEFAULT_FOCAL_DISTANCE);
@@ -50,7 +50,7 @@ function orbitFromCamera(world: FirstLookWorld, camera: Matrix4): ViewValues {
 }
 
 /** Whether nothing except robots is between a camera and a place. */
-function sees(world: FirstLookWorld, eye: Vector, place: Vector): boolean {
+function sees(world: InitialViewWorld, eye: Vector, place: Vector): boolean {
   const from = new Vector3(...eye);
   const direction = new Vector3(...place).sub(from);
   return world.isClear(rayFrom(from, direction.clone().normalize(), direction.length()));

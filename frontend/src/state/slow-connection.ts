@@ -20,7 +20,7 @@ export interface Reduced {
 }
 
 /** The contents that the server reduces because the connection to this page is slow. */
-export class SlowLine {
+export class SlowConnection {
   readonly changed = new Signal();
   private readonly known = new Map<string, { reduction: Reduction; times: number[] }>();
 

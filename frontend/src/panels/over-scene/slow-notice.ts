@@ -1,6 +1,6 @@
 import { coalesced, h } from "../../dom";
 import type { Session } from "../../state/session";
-import type { Reduced } from "../../state/slow-line";
+import type { Reduced } from "../../state/slow-connection";
 import type { SlowCause } from "../../state/slowness";
 import { strings } from "../../strings";
 
@@ -11,13 +11,13 @@ const NOTICE_MS = 15_000;
  * The notice over the scene while data is thinned: the data and its rate, the slow part, and the remedy. A notice that
  * the page itself is slow is shown only once, for a while.
  */
-export class LineNotice {
+export class SlowNotice {
   readonly element = h("div", { class: "line-notice", role: "status" });
   private slowPageNotice: "not yet" | "now" | "done" = "not yet";
 
   constructor(private readonly session: Session) {
     const update = coalesced(() => this.update());
-    session.slowLine.changed.on(update);
+    session.slowConnection.changed.on(update);
     session.slowness.changed.on(update);
     session.displays.treeChanged.on(update);
     session.drawingPace.changed.on(() => {
@@ -28,12 +28,12 @@ export class LineNotice {
   }
 
   private update(): void {
-    const { slowLine, slowness, drawingPace } = this.session;
-    const { reduced } = slowLine;
+    const { slowConnection, slowness, drawingPace } = this.session;
+    const { reduced } = slowConnection;
     const words = strings.sharing;
     const cause = causeOf(slowness.cause, this.slowPageNotice === "now", reduced.length);
     this.element.hidden = reduced.length === 0 && this.slowPageNotice !== "now";
-    const lines = reduced.map((each) => h("div", {}, h("b", {}, this.name(each)), ` ${lineText(each)}`));
+    const lines = reduced.map((each) => h("div", {}, h("b", {}, this.name(each)), ` ${reductionText(each)}`));
     if (this.slowPageNotice === "now" && drawingPace.software !== null) lines.push(h("div", {}, words.software(drawingPace.software)));
     if (this.slowPageNotice === "now" && this.isLitAutomatically) lines.push(h("div", {}, words.plainLight));
     this.element.replaceChildren(h("strong", {}, words.slow[cause]), h("div", {}, words.slowHints[cause]), ...lines);
@@ -67,7 +67,7 @@ export function causeOf(cause: SlowCause, isNoticeShown: boolean, reduced: numbe
   return isNoticeShown && reduced === 0 ? "page" : cause;
 }
 
-function lineText({ reduction, rate }: Reduced): string {
+function reductionText({ reduction, rate }: Reduced): string {
   const words = strings.sharing;
   const what = reduction.kind === "points" ? words.points(reduction.step) : words.image(reduction);
   return rate === null ? what : `${what}, ${rate.toFixed(1)} Hz`;
