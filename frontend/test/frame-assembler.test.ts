@@ -7,14 +7,14 @@ function piece(number: number, offset: number, length: number, bytes: number[]):
 }
 
 describe("pieces", () => {
-  it("become the frame that was cut", () => {
+  it("are assembled into the original frame", () => {
     const pieces = new FrameAssembler();
     expect(pieces.add(piece(1, 0, 5, [1, 2]))).toBeNull();
     expect(pieces.add(piece(1, 2, 5, [3, 4]))).toBeNull();
     expect(pieces.add(piece(1, 4, 5, [5]))).toEqual(new Uint8Array([1, 2, 3, 4, 5]).buffer);
   });
 
-  it("of a frame that was given up are forgotten", () => {
+  it("of an abandoned frame are dropped", () => {
     const pieces = new FrameAssembler();
     pieces.add(piece(1, 0, 4, [1, 2]));
     expect(pieces.add(piece(2, 0, 2, [7]))).toBeNull();
@@ -22,7 +22,7 @@ describe("pieces", () => {
     expect(pieces.add(piece(2, 1, 2, [8]))).toEqual(new Uint8Array([7, 8]).buffer);
   });
 
-  it("are told from other frames", () => {
+  it("are distinguished from other frames", () => {
     expect(isPiece(piece(1, 0, 1, [1]))).toBe(true);
     expect(isPiece(new Uint32Array([2, 0, 0, 0]).buffer)).toBe(false);
     expect(isPiece(new ArrayBuffer(3))).toBe(false);

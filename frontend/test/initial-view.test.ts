@@ -11,7 +11,7 @@ const SIZE = { width: 800, height: 600 };
 const ROBOT = new Box3(new Vector3(4, -0.2, 0), new Vector3(4.4, 0.2, 0.3));
 const HALL = new Box3(new Vector3(-20, -10, 0), new Vector3(20, 10, 3));
 
-/** The view of a page whose server says whether somebody has put the camera anywhere. */
+/** The view of a page whose server says whether a user has placed the camera. */
 function viewOf(isFree: boolean): ViewState {
   const connection = new Connection("ws://localhost/ws");
   vi.spyOn(connection, "send").mockImplementation(() => true);
@@ -31,7 +31,7 @@ afterEach(() => {
   vi.unstubAllGlobals();
 });
 
-/** A hall with a robot, or without; a wall stands at each of these x, endless along y and as high as said. */
+/** A hall with or without a robot; at each of these x is a wall of this height, infinite along y. */
 class Hall implements InitialViewWorld {
   camera: Matrix4 | null = null;
   constructor(
@@ -61,8 +61,8 @@ class Hall implements InitialViewWorld {
   }
 }
 
-describe("the first look at a world", () => {
-  it("shows all of it until there is a robot, then that and what is around it, and stays", () => {
+describe("the initial view of a world", () => {
+  it("shows the whole world until there is a robot, then the robot with its surroundings, and stays there", () => {
     const view = viewOf(true);
     const hall = new Hall(false);
     setInitialView(hall, view, SIZE);
@@ -79,7 +79,7 @@ describe("the first look at a world", () => {
     expect(view.values["Distance"]).toBe(1);
   });
 
-  it("shows all of it, once, where the robot has fallen out of it", () => {
+  it("shows the whole world, once, if the robot has fallen out of it", () => {
     const view = viewOf(true);
     const hall = new Hall(true);
     hall.fallen = true;
@@ -90,7 +90,7 @@ describe("the first look at a world", () => {
     expect(view.camera.focal).toEqual([0, 0, 1.5]);
   });
 
-  it("does not move a camera that a file, or somebody, has put somewhere", () => {
+  it("does not move a camera that a file or user has placed", () => {
     const chosen = viewOf(false);
     setInitialView(new Hall(true), chosen, SIZE);
     expect(chosen.values).toEqual(VALUES);
@@ -100,7 +100,7 @@ describe("the first look at a world", () => {
     expect(moved.values).toEqual({ ...VALUES, Yaw: 3 });
   });
 
-  it("looks from another side, from above or from nearer where walls hide the robot", () => {
+  it("chooses another side, a higher or a nearer viewpoint if walls hide the robot", () => {
     const from = (walls: readonly (readonly [number, number])[]): Vector => {
       const view = viewOf(true);
       setInitialView(new Hall(true, walls), view, SIZE);
@@ -116,7 +116,7 @@ describe("the first look at a world", () => {
     expect(between[0]).toBeLessThan(4.7);
   });
 
-  it("looks as the world's file says, robots or not", () => {
+  it("is the camera of the world's file, with or without robots", () => {
     const view = viewOf(true);
     const hall = new Hall(true);
     hall.camera = new Matrix4().setPosition(1, 2, 3);

@@ -28,7 +28,7 @@ describe("the layout", () => {
     expect(last?.[0]).toBe((xs[1] ?? 0) - 50);
   });
 
-  it("keeps boxes apart, and everything inside", () => {
+  it("keeps boxes apart and within the drawing", () => {
     const ids = Array.from({ length: 40 }, (_, index) => `n${index}`);
     const links = ids.flatMap((id, index) => [link(id, `n${(index * 7 + 3) % 40}`), link(id, `n${(index * 3 + 11) % 40}`)]);
     const layout = layOutLayers(ids.map(box), links);
@@ -42,20 +42,20 @@ describe("the layout", () => {
     }
   });
 
-  it("bears cycles, and draws two links between the same boxes apart", () => {
+  it("handles cycles, and separates two links between the same boxes", () => {
     const layout = layOutLayers(["a", "b"].map(box), [link("a", "b"), link("b", "a")]);
     const [there, back] = layout.routes;
     expect(there?.points[0]?.[1]).not.toBe(back?.points[0]?.[1]);
     expect(back?.points[0]?.[0]).toBeGreaterThan(back?.points.at(-1)?.[0] ?? 0);
   });
 
-  it("untangles what can be untangled", () => {
+  it("removes avoidable crossings", () => {
     const layout = layOutLayers(["a", "b", "x", "y"].map(box), [link("a", "y"), link("b", "x")]);
     const y = (id: string): number => layout.boxes.get(id)?.y ?? 0;
     expect(Math.sign(y("a") - y("b"))).toBe(Math.sign(y("y") - y("x")));
   });
 
-  it("leads long links past the boxes between", () => {
+  it("routes long links around the boxes between their ends", () => {
     const layout = layOutLayers(["a", "b", "c"].map(box), [link("a", "b"), link("b", "c"), link("a", "c")]);
     const way = layout.routes.find(({ from, to }) => from === "a" && to === "c");
     expect(way?.points).toHaveLength(3);
@@ -72,11 +72,11 @@ describe("the layout", () => {
     expect(new Set(below).size).toBeGreaterThan(1);
   });
 
-  it("of nothing is nothing", () => {
+  it("of an empty graph is empty", () => {
     expect(layOutLayers([], [])).toMatchObject({ width: 0, height: 0 });
   });
 
-  it("takes no time for hundreds of nodes", () => {
+  it("is fast for hundreds of nodes", () => {
     const ids = Array.from({ length: 300 }, (_, index) => `n${index}`);
     const links = ids.slice(1).map((id, index) => link(`n${Math.floor(index / 3)}`, id));
     const started = performance.now();
@@ -85,9 +85,9 @@ describe("the layout", () => {
   });
 });
 
-describe("averaging neighbours in disorder", () => {
-  it("leaves order alone", () => expect(isotonic([1, 2, 2, 5])).toEqual([1, 2, 2, 5]));
-  it("averages", () => expect(isotonic([3, 1, 2, 10])).toEqual([2, 2, 2, 10]));
+describe("averaging unordered neighbours", () => {
+  it("does not change ordered values", () => expect(isotonic([1, 2, 2, 5])).toEqual([1, 2, 2, 5]));
+  it("averages values out of order", () => expect(isotonic([3, 1, 2, 10])).toEqual([2, 2, 2, 10]));
 });
 
 const GRAPH: NodeGraph = {
@@ -110,8 +110,8 @@ function labels(options: Partial<GraphOptions>): string[] {
   return drawnGraph(GRAPH, { ...OPTIONS, ...options }).vertices.map(({ kind, label }) => `${kind} ${label}`);
 }
 
-describe("what is drawn of a graph", () => {
-  it("is nodes and the topics between them", () => {
+describe("the drawn graph", () => {
+  it("has nodes and the topics between them", () => {
     expect(labels({})).toEqual([
       "node /base",
       "node /left/arm",
@@ -125,19 +125,19 @@ describe("what is drawn of a graph", () => {
     ]);
   });
 
-  it("leaves out and takes in what the filters say", () => {
+  it("applies the filters", () => {
     expect(labels({ mode: "all" })).toContain("topic /echo");
     expect(labels({ debug: true })).toContain("topic /rosout");
     expect(labels({ tf: false })).not.toContain("topic /tf");
   });
 
-  it("joins nodes directly when topics are not shown", () => {
+  it("connects nodes directly if topics are not shown", () => {
     const { vertices, edges } = drawnGraph(GRAPH, { ...OPTIONS, mode: "nodes" });
     expect(vertices.every(({ kind }) => kind === "node")).toBe(true);
     expect(edges).toContainEqual({ from: "node:/base", to: "node:/talker", topics: ["/move", "/tf"] });
   });
 
-  it("puts the nodes of a namespace together, with what they say among themselves", () => {
+  it("merges the nodes of a namespace, including the topics between them", () => {
     const { vertices, edges } = drawnGraph(GRAPH, { ...OPTIONS, grouped: true });
     expect(vertices).toContainEqual({ id: "group:/left", kind: "group", label: "/left/", count: 2 });
     expect(vertices.map(({ label }) => label)).not.toContain("/left/grip");

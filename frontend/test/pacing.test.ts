@@ -5,12 +5,12 @@ describe("Pacing", () => {
   beforeEach(() => void vi.useFakeTimers());
   afterEach(() => void vi.useRealTimers());
 
-  it("lets every frame update without an interval", () => {
+  it("updates every frame if there is no interval", () => {
     const pacing = new Pacing(() => expect.unreachable());
     expect([0, 1, 2].map((now) => pacing.isDue(now, 0))).toEqual([true, true, true]);
   });
 
-  it("holds back until the interval is over, then asks for one frame", () => {
+  it("waits until the interval is over, then requests one frame", () => {
     const invalidate = vi.fn();
     const pacing = new Pacing(invalidate);
     expect([0, 100, 400].map((now) => pacing.isDue(now, 500))).toEqual([true, false, false]);
@@ -21,7 +21,7 @@ describe("Pacing", () => {
     expect(pacing.isDue(500, 500)).toBe(true);
   });
 
-  it("updates at once after a restart, and forgets the frame it would have asked for", () => {
+  it("updates at once after a restart, and drops the pending request", () => {
     const invalidate = vi.fn();
     const pacing = new Pacing(invalidate);
     pacing.isDue(0, 500);

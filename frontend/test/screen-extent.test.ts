@@ -12,35 +12,35 @@ function from(distance: number): PerspectiveCamera {
   return camera;
 }
 
-test("the nearest corners reach farthest", () => {
-  // The front is 1 m off, where the canvas is 4 m wide.
+test("the nearest corners determine the extent", () => {
+  // The front is at 1 m, where the canvas is 4 m wide.
   expect(extentOf(BOX, from(2), CANVAS).right).toBeCloseTo(600);
   expect(extentOf(BOX, from(5), CANVAS).right).toBeCloseTo(450);
 });
 
-test("it is told from where a box is seen", () => {
+test("the extent is computed from where a box is visible", () => {
   expect(extentOf(BOX, from(2), CANVAS).left).toBeCloseTo(200);
   expect(extentOf(BOX, from(0.5), CANVAS).left).toBe(-Infinity);
 });
 
-test("what is shifted on the canvas reaches less far", () => {
+test("shifting the canvas reduces the extent", () => {
   const camera = from(2);
   camera.setViewOffset(800, 400, 100, 0, 800, 400);
   expect(extentOf(BOX, camera, CANVAS).right).toBeCloseTo(500);
 });
 
-test("what is behind the eye, too, is everywhere", () => {
+test("an object that is partly behind the camera extends everywhere", () => {
   expect(extentOf(BOX, from(0.5), CANVAS).right).toBe(Infinity);
 });
 
-test("without perspective only the box counts", () => {
+test("without perspective only the box matters", () => {
   const camera = new OrthographicCamera(-2, 2, 1, -1, 0, 100);
   camera.position.z = 50;
   camera.updateMatrixWorld();
   expect(extentOf(BOX, camera, CANVAS).right).toBeCloseTo(600);
 });
 
-test("it is told between which heights something is seen", () => {
+test("the vertical extent is computed", () => {
   const { top, bottom } = extentOf(BOX, from(2), CANVAS);
   expect([top, bottom]).toEqual([expect.closeTo(0), expect.closeTo(400)]);
   const camera = from(5);

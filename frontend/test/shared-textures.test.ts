@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 import { SharedTextures } from "../src/scene/meshes/shared-textures";
 
 describe("shared textures", () => {
-  it("are loaded once and disposed of after the last user", async () => {
+  it("are loaded once and disposed of after the last release", async () => {
     let loads = 0;
     let disposed = 0;
     const textures = new SharedTextures(() => {

@@ -16,7 +16,7 @@ function cloud(step: number): DisplayData {
   return { display: "cloud", key: "", frame: "", stamp: 0, pose: null, content };
 }
 
-it("tells what is thinned and how often it comes, until it comes whole again", () => {
+it("reports reduced content and its rate until complete content arrives", () => {
   const data = store();
   let now = 0;
   const line = new SlowConnection(data as unknown as DisplayDataStore, () => now);
@@ -31,7 +31,7 @@ it("tells what is thinned and how often it comes, until it comes whole again", (
   expect(line.reduced).toEqual([]);
 });
 
-it("forgets what is drawn no more", () => {
+it("drops displays that are no longer drawn", () => {
   const data = store();
   const line = new SlowConnection(data as unknown as DisplayDataStore, () => 0);
   data.received.emit(cloud(2));
@@ -40,7 +40,7 @@ it("forgets what is drawn no more", () => {
   expect(line.reduced).toEqual([]);
 });
 
-it("does not tell of images that nobody sees a difference in", () => {
+it("does not report images with invisible loss", () => {
   const data = store();
   const line = new SlowConnection(data as unknown as DisplayDataStore, () => 0);
   const image = (quality: number): DisplayData["content"] => ({

@@ -9,13 +9,13 @@ const ROWS: StatusRow[] = [
   { name: "Transform", level: "error", text: "Could not transform" },
 ];
 
-describe("What is wrong with a display", () => {
-  it("is what of its status is no ok, errors first", () => {
+describe("the problems of a display", () => {
+  it("are its status rows that are not ok, errors first", () => {
     expect(problemsOf(ROWS).map((row) => row.name)).toEqual(["Transform", "Topic"]);
     expect(problemsOf([])).toEqual([]);
   });
 
-  it("is counted where it is an error, and the display is on", () => {
+  it("are counted if they are errors and the display is enabled", () => {
     const displays = new DisplaysState();
     const warned = ROWS.slice(0, 2);
     displays.setTree(tree(display({ id: "a", enabled: true, status: ROWS }), display({ id: "b", enabled: true, status: warned }), display({ id: "c", enabled: false, status: ROWS })));
