@@ -103,7 +103,7 @@ function drivenFrames({ robot, joints }: FollowingRobot): [string, { joint: Join
   });
 }
 
-/** The pose of a joint's child link in its parent link. */
+/** Returns the pose of a joint's child link in its parent link. */
 export function jointPose(joint: JointScene, position: number): Matrix4 {
   const origin = new Matrix4().compose(
     new Vector3().fromArray(joint.position),

@@ -40,7 +40,7 @@ export class RecordedConnection extends Connection {
     if (message.type === "set_joint") this.move({ [message.name]: message.position });
     else if (message.type === "set_joints") this.move(message.positions);
     else if (message.type === "center_joints") this.move(Object.fromEntries(controls.map(({ name, zero }) => [name, zero])));
-    else if (message.type === "randomize_joints") this.move(Object.fromEntries(controls.map((each) => [each.name, randomPosition(each)])));
+    else if (message.type === "randomize_joints") this.move(Object.fromEntries(controls.map((control) => [control.name, randomPosition(control)])));
     else if (message.type === "robot_measured") this.fitSizes(message);
   }
 
@@ -57,7 +57,7 @@ export class RecordedConnection extends Connection {
   private fitSizes({ diagonal, ground }: RobotMeasured): void {
     const { messages, awaits_size, spacing } = this.recording;
     const displays = messages.find((message) => message.type === "tree")?.displays ?? [];
-    const row = (drawn: string, name: string): Property | undefined => displays.find(({ drawing }) => drawing === drawn)?.properties.find((each) => each.name === name);
+    const row = (drawn: string, name: string): Property | undefined => displays.find(({ drawing }) => drawing === drawn)?.properties.find((property) => property.name === name);
     const put = ({ id }: Property, value: number): void => this.message.emit({ type: "property_changed", id, value, options: null });
     const height = row(GRID, "Offset")?.children.find(({ name }) => name === "Z");
     if (height?.value === 0 && ground !== 0) put(height, ground);

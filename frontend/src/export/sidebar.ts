@@ -73,7 +73,7 @@ export class Sidebar {
     const robot = displays.find(({ id }) => id === this.display);
     const boxes = robot ? [this.rowBox(robot, "Visual Enabled", words.visual), this.rowBox(robot, "Collision Enabled", words.collision)] : [];
     const others = displays.filter(({ id, isGroup, supported }) => id !== this.display && !isGroup && supported && !this.session.comparison.isOld(id));
-    return [...boxes, ...others.map((each) => this.displayBox(each))].filter((box) => box !== null);
+    return [...boxes, ...others.map((other) => this.displayBox(other))].filter((box) => box !== null);
   }
 
   private rowBox(robot: DisplayState, row: string, label: string): HTMLElement | null {

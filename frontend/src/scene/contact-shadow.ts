@@ -48,7 +48,7 @@ export class ContactShadow {
    * m.
    */
   update(meshes: readonly Mesh[], height: number): void {
-    const key = meshes.reduce((sum, { matrixWorld }, i) => matrixWorld.elements.reduce((all, each, k) => all + each * (i + k + 1), sum), height);
+    const key = meshes.reduce((sum, { matrixWorld }, i) => matrixWorld.elements.reduce((all, element, k) => all + element * (i + k + 1), sum), height);
     if (key === this.lastKey) return;
     this.lastKey = key;
     const box = new Box3();

@@ -17,8 +17,8 @@ export function frameMaps(enabled: Iterable<readonly [string, Drawing]>, view: V
   const maps = [...enabled].flatMap(([, drawing]) => (drawing instanceof MapDrawing ? [drawing] : []));
   if (maps.length === 0) return;
   const [width, height] = [window.innerWidth, window.innerHeight];
-  const key = [...maps.map((each) => each.size), `${width} x ${height}`].join(";");
+  const key = [...maps.map((map) => map.size), `${width} x ${height}`].join(";");
   if (!view.awaitsMap(key)) return;
-  const span = spanOf(maps.reduce((sum, each) => sum.union(each.bounds()), new Box3()));
+  const span = spanOf(maps.reduce((sum, map) => sum.union(map.bounds()), new Box3()));
   if (span) view.frameMap(span, room.center(), key);
 }

@@ -357,13 +357,13 @@ export class Stage {
 
   private withOnly(accepts: (display: DisplayState) => boolean, draw: () => void): void {
     const decorations = [this.overlays, this.backdrop.root, this.robotLight.root].filter((each) => each.visible);
-    for (const each of decorations) each.visible = false;
+    for (const decoration of decorations) decoration.visible = false;
     for (const { display, drawing } of this.drawings.values()) {
       drawing.root.visible = display.enabled && accepts(display);
     }
     draw();
     for (const { display, drawing } of this.drawings.values()) drawing.root.visible = display.enabled;
-    for (const each of decorations) each.visible = true;
+    for (const decoration of decorations) decoration.visible = true;
   }
 
   private selectionChanged(): void {

@@ -10,7 +10,7 @@ const RECORDING_FILE = /(^metadata\.yaml|\.(mcap|db3)(\.zstd)?)$/;
 
 /** Returns the files of a recording among several, with the name of the file if there is only one. */
 export function recordingAmong(name: string, files: readonly NamedFile[]): Dropped {
-  const found = files.filter((each) => RECORDING_FILE.test(each.name));
+  const found = files.filter((file) => RECORDING_FILE.test(file.name));
   const messages = found.filter((each) => each.name !== "metadata.yaml");
   // The metadata of a single file add nothing to it.
   if (messages.length === 1 && messages[0]) return { name: messages[0].name, files: messages };

@@ -104,7 +104,7 @@ export function groupDifferences(items: readonly ComparedItem[]): DifferenceGrou
     if (last && first?.subject === item.subject && first.name === item.name) last.push(item);
     else groups.push([item]);
   }
-  return groups.map((each) => ({ items: each, kind: each.length === 1 ? (each[0]?.kind ?? "changed") : "changed" }));
+  return groups.map((group) => ({ items: group, kind: group.length === 1 ? (group[0]?.kind ?? "changed") : "changed" }));
 }
 
 /** Returns the marks among the links, in the order of the legend. */

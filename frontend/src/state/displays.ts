@@ -170,7 +170,7 @@ export class DisplaysState {
 
   /** The number of enabled displays with an error; the global status counts as one. */
   get failingCount(): number {
-    const all = [problemsOf(this.globalStatus), ...this.displays.map((each) => each.problems)];
+    const all = [problemsOf(this.globalStatus), ...this.displays.map((display) => display.problems)];
     return all.filter(([worst]) => worst?.level === "error").length;
   }
 

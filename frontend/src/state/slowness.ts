@@ -62,7 +62,7 @@ export class Slowness {
   private addMeasurement(late: number): void {
     this.delays.push(late);
     if (this.delays.length > AVERAGED) this.delays.shift();
-    const sum = this.delays.reduce((all, each) => all + each, 0);
+    const sum = this.delays.reduce((all, delay) => all + delay, 0);
     const share = sum / (sum + this.delays.length * INTERVAL_MS);
     const isLate = this.isPageLate ? share > TIMELY_SHARE : share >= LATE_SHARE;
     if (isLate === this.isPageLate) return;

@@ -47,12 +47,12 @@ export class DiagnosticsPanel implements Panel {
       next.set(id, card);
     };
     show("#status", strings.tree.globalStatus, all, () => h("span"));
-    for (const each of displays.displays) show(each.id, each.name, each.problems, () => this.rowButton(each));
+    for (const display of displays.displays) show(display.id, display.name, display.problems, () => this.rowButton(display));
     this.cards = next;
     const elements = [...next.values()].map((each) => each.element);
     const before = [...this.displays.children];
     // Keep the element of a display whatever its text: the user may be about to click it.
-    if (elements.length !== before.length || elements.some((each, index) => each !== before[index])) this.displays.replaceChildren(...elements);
+    if (elements.length !== before.length || elements.some((element, index) => element !== before[index])) this.displays.replaceChildren(...elements);
     this.showNone();
   }
 

@@ -106,7 +106,7 @@ export class LinksPanel implements Panel {
       twist,
       icon("cube"),
       h("span", { class: "link-name", title: link.name }, link.name),
-      findings.length > 0 ? badge(findings.map((each) => each.message)) : null,
+      findings.length > 0 ? badge(findings.map((finding) => finding.message)) : null,
       h("span", { class: "spacer" }),
       joint ? this.jointName(name("joint", joint.name), joint.kind) : null,
     );

@@ -108,7 +108,7 @@ export class AddDialog {
     this.list.replaceChildren(...entries);
     this.list.role = entries.length > 0 ? "listbox" : "group"; // a listbox without options is none
     if (entries.length === 0) this.list.append(h("p", { class: "empty" }, this.emptyText()));
-    const again = this.choices.find((each) => each.cls === before?.cls && each.topic === before.topic);
+    const again = this.choices.find((choice) => choice.cls === before?.cls && choice.topic === before.topic);
     this.choose(again ?? (wanted === "" ? null : (this.choices[0] ?? null)));
     const first = this.choices[0];
     if (first && !again) first.element.tabIndex = 0;

@@ -17,12 +17,12 @@ export function dropPlace(
 ): DropPlace | null {
   if (target === dragged || target.isWithin(dragged)) return null;
   if (part === "inside") {
-    const first = displays.find((each) => each.group === target && each !== dragged);
+    const first = displays.find((display) => display.group === target && display !== dragged);
     return target.isGroup ? { group: target.id, before: first?.id ?? null } : null;
   }
   const group = target.group?.id ?? null;
   if (part === "before") return { group, before: target.id };
-  const siblings = displays.filter((each) => each.group === target.group && each !== dragged);
+  const siblings = displays.filter((display) => display.group === target.group && display !== dragged);
   return { group, before: siblings[siblings.indexOf(target) + 1]?.id ?? null };
 }
 

@@ -83,7 +83,7 @@ function offerTopics(
   const matchesWords = (topic: string): boolean => words.length === 0 || words.some((word) => topic.toLowerCase().includes(word));
   const forget = configuration.choicesArrived.on(({ classes, topics }) => {
     forget();
-    const known = own?.messages ?? classes.find((each) => each.cls === display.cls)?.messages ?? [];
+    const known = own?.messages ?? classes.find((entry) => entry.cls === display.cls)?.messages ?? [];
     const messages = known.length > 0 ? known : [DESCRIPTION_TYPE];
     show(topics.filter(({ topic, message }) => messages.includes(message) && matchesWords(topic)).map(({ topic }) => topic));
   });

@@ -44,7 +44,7 @@ export function linkRowPath(display: DisplayState, session: Session, link: strin
 /** Returns the display and link whose row has this key. */
 export function linkOfKey(session: Session, key: string): { display: DisplayState; link: string } | null {
   for (const display of session.displays.displays) {
-    const node = display.rows.find("Links")?.children.find((each) => each.id === key && each.details === "link");
+    const node = display.rows.find("Links")?.children.find((child) => child.id === key && child.details === "link");
     if (node) return { display, link: node.name };
   }
   return null;

@@ -153,7 +153,7 @@ const MAX_BELOW_SHARE = 0.45;
 function narrowHome(api: DockviewApi, id: PanelId): Placement {
   if (id === "scene") return PLACEMENTS.scene;
   const others = (Object.keys(PLACEMENTS) as PanelId[]).filter((each) => each !== "scene" && each !== id);
-  const beside: Placement["beside"] = [...others.map((each) => [each, "within"] as const), ["scene", "below"]];
+  const beside: Placement["beside"] = [...others.map((other) => [other, "within"] as const), ["scene", "below"]];
   const lines = TOOLS_HEIGHT + (window.innerWidth < FOOT_WRAPS ? FOOT_LINE : 0);
   const left = api.height - lines - SCENE_SHARE * window.innerHeight;
   return { beside, height: Math.round(Math.min(left, api.height * MAX_BELOW_SHARE)), inactive: !IN_FRONT.includes(id) };

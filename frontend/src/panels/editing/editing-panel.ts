@@ -79,7 +79,7 @@ export class EditingPanel implements Panel {
       input.disabled = whyNot !== "";
       if (!isTyped) input.value = formatNumber(value());
     }
-    for (const each of this.poseControls) each.hidden = chosen?.part === "axis";
+    for (const control of this.poseControls) control.hidden = chosen?.part === "axis";
     this.showModes();
   }
 

@@ -95,7 +95,7 @@ export class ParametersPanel implements Panel {
       } else line.show(row);
       return line.element;
     });
-    const same = elements.length === this.rows.childElementCount && elements.every((each, at) => each === this.rows.children[at]);
+    const same = elements.length === this.rows.childElementCount && elements.every((element, at) => element === this.rows.children[at]);
     if (!same) this.rows.replaceChildren(...elements);
     if (node === null) this.showNote(words.choose);
     else if (parameters === null) this.showNote(words.asking);

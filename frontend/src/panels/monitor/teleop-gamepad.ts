@@ -25,7 +25,7 @@ export class TeleopGamepad {
 
   private read(): void {
     this.frame = requestAnimationFrame(() => this.read());
-    const pad = navigator.getGamepads().find((each) => each !== null && each.connected) ?? null;
+    const pad = navigator.getGamepads().find((gamepad) => gamepad !== null && gamepad.connected) ?? null;
     const name = pad?.id ?? null;
     if (name !== this.lastName) {
       this.lastName = name;

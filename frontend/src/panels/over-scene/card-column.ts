@@ -32,7 +32,7 @@ export class CardColumn {
 
   private get covered(): number {
     const cards = [...this.element.querySelectorAll<HTMLElement>(".inspect-card, .selection-card:not(.folded)")];
-    const isOpen = cards.some((each) => each.offsetHeight > 0);
+    const isOpen = cards.some((card) => card.offsetHeight > 0);
     return isOpen ? (this.element.parentElement?.clientWidth ?? 0) - this.left : 0;
   }
 

@@ -29,7 +29,7 @@ export class FrameNotice {
     displays.statusChanged.on(review);
     displays.valueChanged.on(review);
     configuration.choicesArrived.on(({ topics }) => {
-      this.robotTopic = topics.find((each) => each.classes.length > 0 && obviousDisplay(each) === ROBOT_MODEL) ?? null;
+      this.robotTopic = topics.find((topic) => topic.classes.length > 0 && obviousDisplay(topic) === ROBOT_MODEL) ?? null;
       if (!this.element.hidden) this.show();
     });
   }

@@ -39,7 +39,7 @@ export class Toolbar {
     for (const tool of tools.tools) this.buttons.set(tool, this.buttonOf(tool));
     const add: HTMLButtonElement = button(
       words.add,
-      () => openMenu(add, tools.classes.map((each) => ({ label: toolName(each), run: () => tools.add(each.cls) }))),
+      () => openMenu(add, tools.classes.map((tool) => ({ label: toolName(tool), run: () => tools.add(tool.cls) }))),
       "scene-tool small",
       icon("plus"),
     );

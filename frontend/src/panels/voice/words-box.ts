@@ -37,7 +37,7 @@ export class WordsBox {
     };
     const field = (this.field = textField(texts.choose, () => undefined));
     field.maxLength = 100;
-    const suggestions = h("datalist", {}, ...texts.suggestions.map((each) => new Option(each)));
+    const suggestions = h("datalist", {}, ...texts.suggestions.map((suggestion) => new Option(suggestion)));
     suggestions.id = "voice-word-suggestions";
     field.setAttribute("list", suggestions.id);
     field.addEventListener("keydown", (event) => {

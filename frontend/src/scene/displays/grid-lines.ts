@@ -63,7 +63,7 @@ export function splitLines(lines: Float32Array, pieces: number): Float32Array {
 export function fadedColors(ends: Float32Array): Float32Array {
   const shades = new Float32Array((ends.length / 3) * 4).fill(1);
   const far = (i: number): number => Math.hypot(ends[i] ?? 0, ends[i + 1] ?? 0, ends[i + 2] ?? 0);
-  const farthest = ends.reduce((most, each) => Math.max(most, Math.abs(each)), 0);
+  const farthest = ends.reduce((most, end) => Math.max(most, Math.abs(end)), 0);
   for (let i = 0; i < ends.length; i += 3) shades[(i / 3) * 4 + 3] = Math.max(0, 1 - (far(i) / farthest) ** 2);
   return shades;
 }

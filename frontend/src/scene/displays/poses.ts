@@ -28,20 +28,20 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
   }
 
   pickBox(box: SelectionBox): readonly string[] {
-    return this.drawnContents.flatMap((each) => {
-      const place = placeOf(each);
-      return box.hasPoint(place.x, place.y, place.z) ? [each.key] : [];
+    return this.drawnContents.flatMap((content) => {
+      const place = placeOf(content);
+      return box.hasPoint(place.x, place.y, place.z) ? [content.key] : [];
     });
   }
 
   placeOf(key: string): Vector3 | null {
-    const found = this.drawnContents.find((each) => each.key === key);
+    const found = this.drawnContents.find((content) => content.key === key);
     return found ? placeOf(found) : null;
   }
 
   /** Returns a pose as in RViz's Selection panel: in the frame of its message. */
   describe(key: string): DescriptionRow | null {
-    const found = this.drawnContents.find((each) => each.key === key);
+    const found = this.drawnContents.find((content) => content.key === key);
     if (!found) return null;
     const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 0] = found.content.poses;
     const children = [

@@ -61,7 +61,7 @@ export class DepthMarks {
   }
 }
 
-/** 0xrrggbb */
+/** Returns the colour of a level of the tree, 0xrrggbb. */
 function levelColor(depth: number): number {
   return new Color().setHSL((0.58 + depth * HUE_STEP) % 1, 0.85, 0.6).getHex();
 }

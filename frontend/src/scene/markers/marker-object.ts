@@ -179,7 +179,7 @@ class MeshMarker implements MarkerObject {
       problem = template.problem;
       if (!this.disposed) {
         for (const { geometry, materials } of template.parts) {
-          const own = materials.map((each) => this.paint(mesh.embedded ? each : null));
+          const own = materials.map((material) => this.paint(mesh.embedded ? material : null));
           this.materials.push(...own);
           const [only] = own;
           this.root.add(new Mesh(geometry, own.length === 1 && only ? only : own));

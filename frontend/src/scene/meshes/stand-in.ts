@@ -117,9 +117,9 @@ function withoutDegenerate(index: Uint32Array): Uint32Array {
 
 function boundingSphere(positions: Float32Array): [number, number, number, number] {
   const [least, most] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-  positions.forEach((each, i) => {
-    least[i % 3] = Math.min(least[i % 3] ?? each, each);
-    most[i % 3] = Math.max(most[i % 3] ?? each, each);
+  positions.forEach((position, i) => {
+    least[i % 3] = Math.min(least[i % 3] ?? position, position);
+    most[i % 3] = Math.max(most[i % 3] ?? position, position);
   });
   const middle = (axis: number): number => ((least[axis] ?? 0) + (most[axis] ?? 0)) / 2;
   const [x, y, z] = [middle(0), middle(1), middle(2)];

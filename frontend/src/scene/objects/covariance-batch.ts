@@ -67,7 +67,7 @@ export class CovarianceBatch {
         ? deviationsOf([c(0, 0), c(0, 1), 0, c(1, 0), c(1, 1), 0, 0, 0, 0])
         : deviationsOf([c(0, 0), c(0, 1), c(0, 2), c(1, 0), c(1, 1), c(1, 2), c(2, 0), c(2, 1), c(2, 2)]);
       if (shape) {
-        const [x, y, z] = shape.deviations.map((each) => 2 * each * scale) as [number, number, number];
+        const [x, y, z] = shape.deviations.map((deviation) => 2 * deviation * scale) as [number, number, number];
         const size = this.scale.makeScale(atLeastFlat(x), atLeastFlat(y), atLeastFlat(z));
         this.balls.add(this.matrix.copy(this.root).multiply(shape.axes).multiply(size), 0, alpha, color);
       }
@@ -113,7 +113,7 @@ export class CovarianceBatch {
       const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
       const shape = deviationsOf([c(3 + u, 3 + u), c(3 + u, 3 + v), 0, c(3 + v, 3 + u), c(3 + v, 3 + v), 0, 0, 0, 0]);
       if (!shape || offset <= 0) continue;
-      const [x, y] = shape.deviations.map((each) => atLeastFlat(offset * widthOfAngle(2 * each * scale)));
+      const [x, y] = shape.deviations.map((deviation) => atLeastFlat(offset * widthOfAngle(2 * deviation * scale)));
       this.matrix.copy(this.root).multiply(DISCS[axis] ?? DISCS[2]).multiply(this.scale.makeTranslation(0, 0, offset));
       this.matrix.multiply(shape.axes).multiply(this.scale.makeScale(x ?? FLAT, y ?? FLAT, FLAT));
       this.discs.add(this.matrix, 0, alpha, colors[axis] ?? colors[2]);

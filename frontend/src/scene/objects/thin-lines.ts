@@ -49,7 +49,7 @@ export class ThinLines {
   setStrips(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): void {
     this.setSegments(
       concatenated(strips.map((strip) => segmentsOf(strip))),
-      colors && concatenated(colors.map((each) => segmentsOf(each, 4))),
+      colors && concatenated(colors.map((color) => segmentsOf(color, 4))),
     );
   }
 

@@ -62,8 +62,8 @@ export class LinkDrawing {
     const color = link.visuals[0]?.color ?? null;
     this.visuals = link.visuals.map((shape) => new ShapeDrawing(shape));
     this.collisions = link.collisions.map((shape) => new ShapeDrawing({ ...shape, color: shape.color ?? color }));
-    for (const each of this.visuals) this.visualGroup.add(each.root);
-    for (const each of this.collisions) this.collisionGroup.add(each.root);
+    for (const visual of this.visuals) this.visualGroup.add(visual.root);
+    for (const collision of this.collisions) this.collisionGroup.add(collision.root);
     this.visualGroup.matrixAutoUpdate = this.collisionGroup.matrixAutoUpdate = false;
     this.root.matrixAutoUpdate = false;
     this.root.visible = false;
@@ -78,7 +78,7 @@ export class LinkDrawing {
   /** The number of visuals drawn now. */
   get visualsDrawn(): number {
     if (!this.root.visible || !this.visualGroup.visible) return 0;
-    return this.visuals.filter((each) => each.drawn).length;
+    return this.visuals.filter((visual) => visual.drawn).length;
   }
 
   /** The pose at which the link is drawn; null until it has a transform. */
@@ -127,10 +127,10 @@ export class LinkDrawing {
   paint(): void {
     const { contrast, override } = this.style;
     const alpha = override?.firm === true ? Math.sqrt(this.style.alpha) : this.style.alpha;
-    for (const each of this.visuals) each.paint(this.pool, contrast ? alpha * PALE_FACTOR : alpha, this.hasLostTransform, override);
-    for (const each of this.collisions) {
-      if (contrast) each.paint(this.pool, alpha * COLLISION_ALPHA, this.hasLostTransform, COLLISION);
-      else each.paint(this.pool, alpha, this.hasLostTransform, override);
+    for (const visual of this.visuals) visual.paint(this.pool, contrast ? alpha * PALE_FACTOR : alpha, this.hasLostTransform, override);
+    for (const collision of this.collisions) {
+      if (contrast) collision.paint(this.pool, alpha * COLLISION_ALPHA, this.hasLostTransform, COLLISION);
+      else collision.paint(this.pool, alpha, this.hasLostTransform, override);
     }
   }
 
@@ -155,15 +155,15 @@ export class LinkDrawing {
     this.collisionGroup.visible = (style.collision || style.contrast || displaced?.kind === "collision") && style.enabled;
     if (!displaced) return;
     const shapes = displaced.kind === "visual" ? this.visuals : this.collisions;
-    shapes.filter((each) => each.isAt(displaced.from))[displaced.among]?.displace(displaced.to);
+    shapes.filter((shape) => shape.isAt(displaced.from))[displaced.among]?.displace(displaced.to);
   }
 
   /** Returns what is drawn, for tests. */
   inspect(): { visuals: InspectedShape[]; collisions: InspectedShape[]; trail: boolean } {
     const { visible } = this.root;
     return {
-      visuals: visible && this.visualGroup.visible ? this.visuals.map((each) => each.inspect()) : [],
-      collisions: visible && this.collisionGroup.visible ? this.collisions.map((each) => each.inspect()) : [],
+      visuals: visible && this.visualGroup.visible ? this.visuals.map((visual) => visual.inspect()) : [],
+      collisions: visible && this.collisionGroup.visible ? this.collisions.map((collision) => collision.inspect()) : [],
       trail: this.trail !== null,
     };
   }

@@ -83,7 +83,7 @@ export class RobotDrawing {
    */
   bounds(): Box3 {
     const box = new Box3();
-    for (const each of this.boundsOfLinks().values()) box.union(each);
+    for (const bounds of this.boundsOfLinks().values()) box.union(bounds);
     if (!box.isEmpty()) return box;
     for (const { pose } of this.links.values()) if (pose) box.expandByPoint(new Vector3().setFromMatrixPosition(pose));
     return box;

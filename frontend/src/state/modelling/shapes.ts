@@ -91,5 +91,5 @@ export function isShape(kind: NewKind): kind is Shape {
 }
 
 function largestFactor(...factors: number[]): number {
-  return factors.reduce((best, each) => (Math.abs(Math.log(Math.abs(each))) > Math.abs(Math.log(Math.abs(best))) ? each : best), 1);
+  return factors.reduce((best, factor) => (Math.abs(Math.log(Math.abs(factor))) > Math.abs(Math.log(Math.abs(best))) ? factor : best), 1);
 }

@@ -30,8 +30,8 @@ export function framing(camera: Camera, values: ViewValues, span: Span, { width,
   const middle = scale(add(span.min, span.max), 0.5);
   const tangent = Math.tan(FIELD_OF_VIEW / 2) / MARGIN;
   let [distance, metres, front] = [0, 0, 0];
-  for (const each of span.points ?? corners(span)) {
-    const corner = subtract(each, middle);
+  for (const point of span.points ?? corners(span)) {
+    const corner = subtract(point, middle);
     const [across, along] = [Math.abs(dot(corner, right)), Math.abs(dot(corner, up))];
     distance = Math.max(distance, dot(corner, back) + Math.max(along, (across * height) / width) / tangent);
     metres = Math.max(metres, (2 * across) / width, (2 * along) / height);

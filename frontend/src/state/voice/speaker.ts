@@ -30,7 +30,7 @@ export class Speaker {
   get voices(): readonly SpeechSynthesisVoice[] {
     const { languages } = navigator;
     const rank = (voice: SpeechSynthesisVoice): number => {
-      const at = languages.findIndex((each) => voice.lang.toLowerCase().startsWith(each.slice(0, 2).toLowerCase()));
+      const at = languages.findIndex((language) => voice.lang.toLowerCase().startsWith(language.slice(0, 2).toLowerCase()));
       return at < 0 ? languages.length : at;
     };
     return [...(this.synthesis?.getVoices() ?? [])].sort((a, b) => rank(a) - rank(b) || a.name.localeCompare(b.name));
