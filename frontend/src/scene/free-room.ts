@@ -47,9 +47,9 @@ export class FreeRoom {
     const { viewport } = this;
     const before = viewport.shiftLeft;
     viewport.shiftLeft = 0;
-    const wanted = Math.min(this.covered(), viewport.size.width * MAX_COVERED) / 2;
-    const reach = wanted > 0 ? this.reach() : null;
-    viewport.shiftLeft = reach ? Math.max(0, Math.min(wanted, reach.left)) : wanted;
+    const target = Math.min(this.covered(), viewport.size.width * MAX_COVERED) / 2;
+    const reach = target > 0 ? this.reach() : null;
+    viewport.shiftLeft = reach ? Math.max(0, Math.min(target, reach.left)) : target;
     if (viewport.shiftLeft !== before) this.invalidate();
   }
 

@@ -48,8 +48,8 @@ export class JointDrag {
       return true;
     }
     const { joints, tools } = this.session;
-    const wanted = joints.controls !== null && (event.alt || joints.dragsWithoutAlt) && event.type !== "leave";
-    if (!wanted || (tools.current && !TOOLS.includes(tools.current.cls))) {
+    const isEnabled = joints.controls !== null && (event.alt || joints.dragsWithoutAlt) && event.type !== "leave";
+    if (!isEnabled || (tools.current && !TOOLS.includes(tools.current.cls))) {
       this.stopHovering();
       return false;
     }

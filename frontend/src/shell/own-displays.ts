@@ -20,7 +20,7 @@ export function ownKey(storage: Pick<Storage, "getItem" | "setItem">): string {
   const known = storage.getItem(KEY);
   if (known !== null) return known;
   const bytes = crypto.getRandomValues(new Uint8Array(16));
-  const made = Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
-  storage.setItem(KEY, made);
-  return made;
+  const name = Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
+  storage.setItem(KEY, name);
+  return name;
 }

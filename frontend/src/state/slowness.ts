@@ -42,11 +42,11 @@ export class Slowness {
   }
 
   private startOrStop(): void {
-    const wanted = this.slowConnection.reduced.length > 0;
-    if (wanted === (this.timer !== undefined)) return;
+    const isNeeded = this.slowConnection.reduced.length > 0;
+    if (isNeeded === (this.timer !== undefined)) return;
     clearTimeout(this.timer);
     this.timer = undefined;
-    if (wanted) this.scheduleMeasurement();
+    if (isNeeded) this.scheduleMeasurement();
   }
 
   /** Schedules a measurement: messages wait for a busy page as long as its timers do. */

@@ -41,9 +41,9 @@ export class Sweep {
  */
 export function roundTrip({ lower, upper }: Pick<JointControl, "lower" | "upper">, start: number, part: number): number {
   const range = upper - lower;
-  const gone = part * 2 * range;
+  const travelled = part * 2 * range;
   const up = upper - start;
-  if (gone <= up) return start + gone;
-  if (gone <= up + range) return upper - (gone - up);
-  return lower + (gone - up - range);
+  if (travelled <= up) return start + travelled;
+  if (travelled <= up + range) return upper - (travelled - up);
+  return lower + (travelled - up - range);
 }

@@ -76,15 +76,15 @@ export class AddDialog {
   }
 
   private makeTab(tab: Tab, label: string): HTMLButtonElement {
-    const made = button(label, () => this.show(tab), "tab", label);
-    made.setAttribute("role", "tab");
-    made.addEventListener("keydown", (event) => {
+    const tabButton = button(label, () => this.show(tab), "tab", label);
+    tabButton.setAttribute("role", "tab");
+    tabButton.addEventListener("keydown", (event) => {
       if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
       const other = tab === "type" ? "topic" : "type";
       this.show(other);
       this.tabs[other].focus();
     });
-    return made;
+    return tabButton;
   }
 
   private show(tab: Tab): void {
@@ -101,15 +101,15 @@ export class AddDialog {
   }
 
   private fill(): void {
-    const wanted = this.search.value.trim().toLowerCase();
+    const query = this.search.value.trim().toLowerCase();
     const before = this.chosen;
     this.choices = [];
-    const entries = this.tab === "type" ? this.types(wanted) : this.byTopic(wanted);
+    const entries = this.tab === "type" ? this.types(query) : this.byTopic(query);
     this.list.replaceChildren(...entries);
     this.list.role = entries.length > 0 ? "listbox" : "group"; // a listbox without options is none
     if (entries.length === 0) this.list.append(h("p", { class: "empty" }, this.emptyText()));
     const again = this.choices.find((choice) => choice.cls === before?.cls && choice.topic === before.topic);
-    this.choose(again ?? (wanted === "" ? null : (this.choices[0] ?? null)));
+    this.choose(again ?? (query === "" ? null : (this.choices[0] ?? null)));
     const first = this.choices[0];
     if (first && !again) first.element.tabIndex = 0;
   }
@@ -125,16 +125,16 @@ export class AddDialog {
     return this.isWaiting || choices === null ? { classes: [], topics: [] } : choices;
   }
 
-  private types(wanted: string): HTMLElement[] {
+  private types(query: string): HTMLElement[] {
     return this.offered.classes
       .map(({ cls, messages }) => ({ cls, about: aboutDisplay(cls), messages }))
-      .filter(({ cls, about, messages }) => [cls, about, ...messages].some((text) => text.toLowerCase().includes(wanted)))
+      .filter(({ cls, about, messages }) => [cls, about, ...messages].some((text) => text.toLowerCase().includes(query)))
       .map(({ cls, about }) => this.choice(cls, null, shortName(cls), about));
   }
 
-  private byTopic(wanted: string): HTMLElement[] {
+  private byTopic(query: string): HTMLElement[] {
     const matches = ({ topic, message, classes }: TopicChoice): boolean =>
-      [topic, message, ...classes].some((text) => text.toLowerCase().includes(wanted));
+      [topic, message, ...classes].some((text) => text.toLowerCase().includes(query));
     const listed = this.offered.topics.filter((each) => each.classes.length > 0 || this.showAll.checked);
     return listed.filter(matches).map((each) => {
       const { topic, message, classes } = each;

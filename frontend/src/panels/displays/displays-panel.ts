@@ -55,9 +55,9 @@ export class DisplaysPanel implements Panel {
     const words = strings.displays;
     const { commands } = this;
     const tool = (label: string, name: Parameters<typeof icon>[0], keys: string, run: () => void): HTMLButtonElement => {
-      const made = button(`${label} (${keys})`, run, "tool bare", icon(name));
-      this.needsDisplay.push(made);
-      return made;
+      const toolButton = button(`${label} (${keys})`, run, "tool bare", icon(name));
+      this.needsDisplay.push(toolButton);
+      return toolButton;
     };
     return h(
       "div",

@@ -59,7 +59,7 @@ export class JointsPanel implements Panel {
   }
 
   private applyFilter(): void {
-    const wanted = this.filter.value.trim().toLowerCase();
-    for (const row of this.rows) row.element.hidden = !row.joint.name.toLowerCase().includes(wanted);
+    const query = this.filter.value.trim().toLowerCase();
+    for (const row of this.rows) row.element.hidden = !row.joint.name.toLowerCase().includes(query);
   }
 }

@@ -83,8 +83,8 @@ export class PoseBar {
       return;
     }
     const free = controls.filter((joint) => joint.mimic === null);
-    const taken = free.map((joint) => [joint.name, positions[joint.name] ?? joint.zero] as const);
-    this.session.poses.save(this.robot, { name, positions: Object.fromEntries(taken) });
+    const saved = free.map((joint) => [joint.name, positions[joint.name] ?? joint.zero] as const);
+    this.session.poses.save(this.robot, { name, positions: Object.fromEntries(saved) });
     this.name.value = "";
     this.notice.hidden = true;
   }

@@ -42,8 +42,8 @@ export class ModelDialog {
 
   private fill(): void {
     const words = strings.modelling;
-    const wanted = this.search.value.trim().toLowerCase();
-    this.shown = (this.models ?? []).filter(({ name, address }) => `${name} ${address}`.toLowerCase().includes(wanted));
+    const query = this.search.value.trim().toLowerCase();
+    this.shown = (this.models ?? []).filter(({ name, address }) => `${name} ${address}`.toLowerCase().includes(query));
     this.list.replaceChildren(...this.shown.map((model) => this.row(model)));
     if (this.models && this.shown.length === 0) {
       this.list.append(h("p", { class: "empty" }, this.models.length === 0 ? words.noModels : words.notFound));

@@ -78,23 +78,23 @@ export class ModellingBar {
     const { modelling } = this;
     const words = strings.modelling;
     const placing: Placing = { kind, address: "" };
-    const made = tool(kind === "wall" ? words.addWall : words.add(words.kinds[kind]), name, () => undefined);
-    made.setAttribute("aria-label", words.kinds[kind]);
+    const toolButton = tool(kind === "wall" ? words.addWall : words.add(words.kinds[kind]), name, () => undefined);
+    toolButton.setAttribute("aria-label", words.kinds[kind]);
     let wasDropped = false;
-    made.addEventListener("click", (event) => {
+    toolButton.addEventListener("click", (event) => {
       if (wasDropped) return;
       if (event.detail === 0) modelling.drop({ placing, at: null });
       else modelling.place(modelling.placing?.kind === kind ? null : placing);
     });
-    made.addEventListener("pointerup", ({ clientX: x, clientY: y }) => {
+    toolButton.addEventListener("pointerup", ({ clientX: x, clientY: y }) => {
       if (!(document.elementFromPoint(x, y) instanceof HTMLCanvasElement)) return;
       wasDropped = true; // a click follows
       setTimeout(() => (wasDropped = false));
       modelling.drop({ placing, at: { x, y } });
     });
     // Without the capture, dragging a finger would scroll the page, and the button would receive no further events.
-    made.addEventListener("pointerdown", ({ pointerId }) => made.setPointerCapture(pointerId));
-    return made;
+    toolButton.addEventListener("pointerdown", ({ pointerId }) => toolButton.setPointerCapture(pointerId));
+    return toolButton;
   }
 }
 

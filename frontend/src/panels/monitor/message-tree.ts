@@ -67,9 +67,9 @@ export class MessageTree {
       numeric ? button(strings.monitor.topics.plot, () => this.plot(path), "tool bare", icon("plot")) : null,
     );
     const omitted = h("div", { class: "note" });
-    const made = { element: h("div", {}, head, children), value, children, toggle, omitted };
-    this.rows.set(path, made);
-    return made;
+    const node = { element: h("div", {}, head, children), value, children, toggle, omitted };
+    this.rows.set(path, node);
+    return node;
   }
 
   private toggle(path: string): void {

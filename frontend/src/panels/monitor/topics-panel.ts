@@ -88,7 +88,7 @@ export class TopicsPanel implements Panel {
   private line(name: string): TopicLine {
     const known = this.lines.get(name);
     if (known) return known;
-    const made = new TopicLine(name, {
+    const line = new TopicLine(name, {
       measured: (topic, ticked) => {
         setMember(this.measured, topic, ticked);
         if (!ticked) this.unfolded.delete(topic);
@@ -101,8 +101,8 @@ export class TopicsPanel implements Panel {
       plotted: (topic, path) => this.plot(topic, path),
       shown: (topic) => this.showInScene(topic),
     });
-    this.lines.set(name, made);
-    return made;
+    this.lines.set(name, line);
+    return line;
   }
 
   private watch(): void {

@@ -64,18 +64,18 @@ export class Toolbar {
     const words = strings.tools;
     const label = tool.supported && entry ? words.withKey(name, entry.key) : words.unknown(tool.cls);
     const sign = icon(entry?.icon ?? "unknown");
-    const made = button(label, () => this.tools.choose(tool), "scene-tool", sign, h("span", { class: "tool-name" }, name));
-    made.setAttribute("aria-label", name);
-    made.disabled = !tool.supported;
-    if (entry) made.setAttribute("aria-keyshortcuts", entry.key);
-    return made;
+    const toolButton = button(label, () => this.tools.choose(tool), "scene-tool", sign, h("span", { class: "tool-name" }, name));
+    toolButton.setAttribute("aria-label", name);
+    toolButton.disabled = !tool.supported;
+    if (entry) toolButton.setAttribute("aria-keyshortcuts", entry.key);
+    return toolButton;
   }
 
   private mark(): void {
     const { current } = this.tools;
-    for (const [tool, made] of this.buttons) {
-      made.setAttribute("aria-pressed", String(tool === current));
-      made.classList.toggle("active", tool === current);
+    for (const [tool, toolButton] of this.buttons) {
+      toolButton.setAttribute("aria-pressed", String(tool === current));
+      toolButton.classList.toggle("active", tool === current);
     }
   }
 

@@ -150,7 +150,7 @@ export class SolidMarkers {
 
 /** Returns objects with the surfaces of a marker, for picking and outlining; they are not part of a scene. */
 export function surfacesOf(marker: MarkerShape, pose: Matrix4): Mesh[] {
-  const made = (geometry: BufferGeometry, matrix: Matrix4): Mesh => {
+  const meshAt = (geometry: BufferGeometry, matrix: Matrix4): Mesh => {
     const mesh = new Mesh(geometry);
     mesh.matrixAutoUpdate = false;
     mesh.matrix.copy(matrix);
@@ -162,17 +162,17 @@ export function surfacesOf(marker: MarkerShape, pose: Matrix4): Mesh[] {
       const length = shape.shaftLength + shape.headLength;
       const width = Math.max(shape.shaftDiameter, shape.headDiameter);
       const box = new Matrix4().makeScale(length, width, width).setPosition(length / 2, 0, 0);
-      return made(unitBox, box.premultiply(at));
+      return meshAt(unitBox, box.premultiply(at));
     });
   }
   const list = marker.shape === "cube_list" || marker.shape === "sphere_list";
   const geometry = SHAPES[list ? marker.shape.slice(0, -"_list".length) : marker.shape]?.geometry ?? unitBox;
-  if (!list) return [made(geometry, sized(pose, marker))];
+  if (!list) return [meshAt(geometry, sized(pose, marker))];
   const shape = sized(new Matrix4(), marker);
   const meshes: Mesh[] = [];
   for (let i = 0; i < marker.points.length; i += 3) {
     const [x = 0, y = 0, z = 0] = marker.points.subarray(i, i + 3);
-    meshes.push(made(geometry, new Matrix4().makeTranslation(x, y, z).premultiply(pose).multiply(shape)));
+    meshes.push(meshAt(geometry, new Matrix4().makeTranslation(x, y, z).premultiply(pose).multiply(shape)));
   }
   return meshes;
 }

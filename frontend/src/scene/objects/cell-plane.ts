@@ -136,12 +136,12 @@ export class CellPlane {
 }
 
 function texture(data: Uint8Array, width: number, height: number): DataTexture {
-  const made = new DataTexture(data, width, height);
-  if (data.length === width * height) made.format = RedFormat;
-  made.magFilter = made.minFilter = NearestFilter;
-  made.wrapS = made.wrapT = ClampToEdgeWrapping;
-  made.unpackAlignment = 1;
-  return made;
+  const texture = new DataTexture(data, width, height);
+  if (data.length === width * height) texture.format = RedFormat;
+  texture.magFilter = texture.minFilter = NearestFilter;
+  texture.wrapS = texture.wrapT = ClampToEdgeWrapping;
+  texture.unpackAlignment = 1;
+  return texture;
 }
 
 /** Copies the cells of a part from the row-by-row cells of the whole. */

@@ -20,7 +20,7 @@ export interface Ribbons {
 export function ribbons(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): Ribbons {
   const points = strips.reduce((sum, strip) => sum + strip.length / 3, 0);
   const pieces = strips.reduce((sum, strip) => sum + Math.max(0, strip.length / 3 - 1), 0);
-  const made: Ribbons = {
+  const result: Ribbons = {
     positions: new Float32Array(points * 6),
     directions: new Float32Array(points * 6),
     sides: new Float32Array(points * 2),
@@ -35,18 +35,18 @@ export function ribbons(strips: readonly Float32Array[], colors: readonly Float3
       const along = direction(strip, i);
       const color = colors?.[number]?.subarray(i * 4, i * 4 + 4);
       for (const side of [-0.5, 0.5]) {
-        made.positions.set(point, vertex * 3);
-        made.directions.set(along, vertex * 3);
-        made.sides[vertex] = side;
-        if (color) made.colors?.set(color, vertex * 4);
+        result.positions.set(point, vertex * 3);
+        result.directions.set(along, vertex * 3);
+        result.sides[vertex] = side;
+        if (color) result.colors?.set(color, vertex * 4);
         vertex += 1;
       }
       if (i === 0) continue;
-      made.indices.set([vertex - 4, vertex - 3, vertex - 1, vertex - 4, vertex - 1, vertex - 2], index);
+      result.indices.set([vertex - 4, vertex - 3, vertex - 1, vertex - 4, vertex - 1, vertex - 2], index);
       index += 6;
     }
   });
-  return made;
+  return result;
 }
 
 /** Returns both ends of every segment of a line strip. */

@@ -66,15 +66,15 @@ export class WideLines {
    * colour.
    */
   setStrips(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): void {
-    const made = ribbons(strips, colors);
-    const geometry = new BufferGeometry().setIndex(new BufferAttribute(made.indices, 1));
-    geometry.setAttribute("position", new BufferAttribute(made.positions, 3));
-    geometry.setAttribute("direction", new BufferAttribute(made.directions, 3));
-    geometry.setAttribute("side", new BufferAttribute(made.sides, 1));
-    if (made.colors) geometry.setAttribute("rgba", new BufferAttribute(made.colors, 4));
+    const result = ribbons(strips, colors);
+    const geometry = new BufferGeometry().setIndex(new BufferAttribute(result.indices, 1));
+    geometry.setAttribute("position", new BufferAttribute(result.positions, 3));
+    geometry.setAttribute("direction", new BufferAttribute(result.directions, 3));
+    geometry.setAttribute("side", new BufferAttribute(result.sides, 1));
+    if (result.colors) geometry.setAttribute("rgba", new BufferAttribute(result.colors, 4));
     this.root.geometry.dispose();
     this.root.geometry = geometry;
-    this.root.visible = made.indices.length > 0;
+    this.root.visible = result.indices.length > 0;
     this.updateMaterial();
   }
 

@@ -135,9 +135,9 @@ export class MovingMeshes {
     if (!index) return;
     let count = 0;
     pieces.forEach(({ standIn }, i) => {
-      const wanted = standIn.levels[levels[i] ?? -1]?.index ?? [];
+      const indices = standIn.levels[levels[i] ?? -1]?.index ?? [];
       const first = this.firsts[i] ?? 0;
-      for (const vertex of wanted) index.array[count++] = first + vertex;
+      for (const vertex of indices) index.array[count++] = first + vertex;
     });
     geometry.setDrawRange(0, count);
     index.clearUpdateRanges();

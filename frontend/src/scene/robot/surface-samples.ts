@@ -49,8 +49,8 @@ function sampleSurface(geometry: BufferGeometry): SurfaceSamples {
   const points = new Float32Array(area > 0 ? 3 * POINTS : 0);
   const [point, side] = [new Vector3(), new Vector3()];
   for (let n = 0, i = 0; 3 * n < points.length; n++) {
-    const wanted = ((n + 0.5) / POINTS) * area;
-    while (i < count - 1 && (sums[i] ?? area) < wanted) i++;
+    const target = ((n + 0.5) / POINTS) * area;
+    while (i < count - 1 && (sums[i] ?? area) < target) i++;
     const { a, b, c } = triangleAt(i);
     const [u, v] = [(n * STEP_A) % 1, (n * STEP_B) % 1];
     const isBeyond = u + v > 1;

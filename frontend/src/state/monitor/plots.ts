@@ -185,14 +185,14 @@ export class PlotsState {
     try {
       const saved = JSON.parse(text) as Saved;
       for (const { series, range } of saved.plots) {
-        const made = series.map(({ topic, path }) => ({
+        const restored = series.map(({ topic, path }) => ({
           topic,
           path,
           id: this.nextId++,
           buffer: new SeriesBuffer(),
           error: null,
         }));
-        this.plots.push({ id: this.nextId++, series: made, range });
+        this.plots.push({ id: this.nextId++, series: restored, range });
       }
       this.seconds = saved.seconds;
       this.source = saved.source;

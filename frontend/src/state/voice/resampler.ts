@@ -29,13 +29,13 @@ export class Resampler {
     all.set(this.buffered);
     all.set(samples, this.buffered.length);
     const count = Math.max(0, Math.ceil((all.length - this.half - this.at) / this.step));
-    const made = new Float32Array(count);
-    for (let i = 0; i < count; i++) made[i] = this.sampleAt(all, this.at + i * this.step);
+    const output = new Float32Array(count);
+    for (let i = 0; i < count; i++) output[i] = this.sampleAt(all, this.at + i * this.step);
     const next = this.at + count * this.step;
     const drop = Math.min(all.length, Math.max(0, Math.floor(next) - this.half));
     this.buffered = all.slice(drop);
     this.at = next - drop;
-    return made;
+    return output;
   }
 
   private sampleAt(all: Float32Array, at: number): number {
