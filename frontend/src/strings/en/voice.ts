@@ -28,7 +28,7 @@ export const voice = {
   anyVoice: "by language",
   noVoices: "This browser has no voices.",
   problems: {
-    denied: "This page may not use the microphone. Allow it for this page: use the icon left of the address, or the browser's settings.",
+    denied: "The microphone is not allowed. Allow it for this page: use the icon left of the address, or the browser's settings.",
     none: "No microphone was found. Connect one and try again.",
     busy: "The microphone could not be started. Another program may be using it.",
     lost: "The microphone was disconnected. Connect it and try again.",
