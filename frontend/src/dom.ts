@@ -10,7 +10,7 @@ interface Props {
   onClick?: (event: MouseEvent) => void;
 }
 
-/** Makes an element: `h("div", { class: "row" }, "text", child)`. */
+/** Creates an element: `h("div", { class: "row" }, "text", child)`. */
 export function h<K extends keyof HTMLElementTagNameMap>(
   tag: K,
   props: Props = {},
@@ -28,7 +28,7 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return element as HTMLElementTagNameMap[K];
 }
 
-/** A push button; `label` is its tooltip, and its name for those who do not see the icon when there is no text. */
+/** Creates a push button; `label` is its tooltip, and its accessible name if it has no text. */
 export function button(label: string, onClick: () => void, className: string, ...children: readonly Child[]): HTMLButtonElement {
   const named = children.some((child) => typeof child === "string");
   const aria = named ? {} : { label };
@@ -37,7 +37,7 @@ export function button(label: string, onClick: () => void, className: string, ..
   return element;
 }
 
-/** Runs `work` once before the next painting, however often it is asked for. */
+/** Returns a function that runs `work` once before the next paint, however often it is called. */
 export function coalesced(work: () => void): () => void {
   let due = false;
   return () => {

@@ -8,17 +8,19 @@ import type { Camera } from "./state/views/camera";
 import { shortName } from "./state/views/catalog";
 import { number, vector } from "./state/views/view-controller";
 
-/** The value of `window.linkwright`, for tests and curious users; each property is a copy made when it is read. */
+/**
+ * The value of `window.linkwright`, for tests and curious users; each property is a copy made at the time of reading.
+ */
 interface Inspection {
-  /** The robot, its meshes and its first transforms were drawn. */
+  /** Whether the robot has been drawn with its meshes and first transforms. */
   readonly ready: boolean;
-  /** The last frame shows all that came: none is due. */
+  /** Whether the last frame shows all data received, so that none is due. */
   readonly settled: boolean;
-  /** How many messages of the server were taken in since the connection was opened. */
+  /** The number of the server's messages processed since the connection was opened. */
   readonly received: number;
   /** Pose of every frame in the fixed frame, m and xyzw. */
   readonly frames: Record<string, FramePose>;
-  /** The first robot shown; `visuals` is how many of its visuals are drawn now. */
+  /** The first robot shown; `visuals` is the number of its visuals that are drawn now. */
   readonly robot: { name: string; links: number; visuals: number } | null;
   readonly displays: {
     name: string;
@@ -26,7 +28,7 @@ interface Inspection {
     enabled: boolean;
     level: StatusLevel;
     status: StatusRow[];
-    /** What its drawing tells: counts, bounds, colours. */
+    /** What the drawing reports of itself: counts, bounds, colours. */
     drawn: object | null;
   }[];
   readonly view: {
@@ -35,43 +37,43 @@ interface Inspection {
     pitch: number;
     distance: number;
     focalPoint: [number, number, number];
-    /** All values by the paths of their properties. */
+    /** All values, by the paths of their properties. */
     values: Record<string, PropertyValue>;
     /** The camera in the fixed frame. */
     camera: Camera;
     saved: string[];
   };
-  /** The tool in hand; `state` is its own report. */
+  /** The active tool; `state` is its own report. */
   readonly tool: { class: string | null; hint: string; cursor: string; state: object | null };
   readonly tools: string[];
-  /** All selected things. */
+  /** All selected objects. */
   readonly selection: SelectedItem[];
-  /** The recording or the last minutes that are shown: times in s since their start; bytes that are kept. */
+  /** The recording or the history shown: times in s since its start; `kept` is its size in bytes. */
   readonly timeline: { name: string; position: number; length: number; playing: boolean; problem: string; live: boolean; kept: number } | null;
-  /** What is recorded for pages, the part of the last minutes that is marked (s since their start), and why it failed. */
+  /** The recording in progress, the marked part of the history (s since its start), and why recording failed. */
   readonly recording: { path: string; length: number; saved: number | null; problem: string; files: string[]; mark: number[] | null };
   readonly time: { paused: boolean; mode: string; source: string; sources: string[] };
   /** Joint positions of the Joints panel, rad or m. */
   readonly joints: Record<string, number>;
-  /** The description of the first robot, and what the panels about it show. */
+  /** The description of the first robot, and what the panels show of it. */
   readonly description: {
     revision: number;
     links: number;
     joints: number;
-    /** The link or joint that the panels are about. */
+    /** The link or joint that the panels show. */
     focus: { kind: string; name: string } | null;
-    /** Links and joints that edits have changed, in order. */
+    /** Links and joints that edits have changed, in the order of the edits. */
     edited: string[];
     findings: { link: string; code: string }[];
   };
   readonly panels: Record<string, object>;
-  /** What is drawn of the invisible. */
+  /** What is drawn of invisible properties: masses, inertias, joint axes. */
   readonly inspected: object | null;
   readonly selected: { link: string; file: string | null; line: number | null; column: number | null } | null;
   readonly framesDrawn: number;
-  /** How far from the left edge of the canvas robots reach, pixels. */
+  /** The rightmost pixel column that robots cover, from the left edge of the canvas. */
   readonly robotsReach: number;
-  /** Time of the newest transforms, seconds. */
+  /** Time of the newest transforms, s. */
   readonly stamp: number;
 }
 
@@ -193,7 +195,7 @@ export function publishInspection(
       return stage?.loop.framesDrawn ?? 0;
     },
     get robotsReach() {
-      return stage?.room.robotsReach ?? 0;
+      return stage?.freeRoom.robotsReach ?? 0;
     },
   };
   Object.defineProperty(window, "linkwright", { value: Object.freeze(inspection), enumerable: true });

@@ -33,7 +33,7 @@ import { JointTablePanel } from "./panels/joints/joint-table-panel";
 import { JointsPanel } from "./panels/joints/joints-panel";
 import { WorldCommands } from "./panels/modelling/world-commands";
 import { WorldPanel } from "./panels/modelling/world-panel";
-import { keepSearches } from "./panels/kept-searches";
+import { preserveSearches } from "./panels/preserve-searches";
 import { livePanels } from "./panels/monitor/live-panels";
 import { showTopic } from "./panels/monitor/show-topic";
 import { ScenePanel } from "./panels/over-scene/scene-panel";
@@ -45,7 +45,7 @@ import { SelectionPanel } from "./panels/views-and-tools/selection-panel";
 import { ToolPropertiesPanel } from "./panels/views-and-tools/tool-properties-panel";
 import { TransformationPanel } from "./panels/views-and-tools/transformation-panel";
 import { ViewsPanel } from "./panels/views-and-tools/views-panel";
-import { takeTalkKey } from "./panels/voice/talk-button";
+import { bindTalkKey } from "./panels/voice/talk-button";
 import { VoicePanel } from "./panels/voice/voice-panel";
 import { Controls } from "./scene/controls";
 import type { PanelHost } from "./scene/displays/display-panel";
@@ -59,7 +59,7 @@ import { Stage } from "./scene/stage";
 import type { ToolEvent } from "./scene/tools/tool";
 import { Toolbox } from "./scene/tools/toolbox";
 import { WorldHandling } from "./scene/world-handling";
-import { Door } from "./shell/door";
+import { TokenScreen } from "./shell/token-screen";
 import { FileCommands } from "./shell/file-commands";
 import { fullScreenOnF11 } from "./shell/full-screen";
 import { KeySheet } from "./shell/key-sheet";
@@ -83,15 +83,15 @@ function start(app: HTMLElement): void {
   const own = hasOwnDisplays(location.href) ? ownKey(browserStorage("sessionStorage")) : null;
   const tokens = new Tokens(addressBar(), browserStorage());
   const connection = new Connection(socketUrl(location.href, own, language), tokens);
-  const door = new Door(connection, tokens, app);
-  // Before anything is drawn: the answer takes a moment.
+  const door = new TokenScreen(connection, tokens, app);
+  // Connect before drawing anything: the answer takes a moment.
   connection.open();
-  // Browsers slow down the clock of pages that no user sees.
+  // Browsers slow down the timers of hidden pages, the retry timer among them.
   document.addEventListener("visibilitychange", () => {
-    if (!document.hidden) connection.hurry();
+    if (!document.hidden) connection.retryNow();
   });
   const session = new Session(connection);
-  languageChosen.on(() => session.kept.leave());
+  languageChosen.on(() => session.memory.store());
 
   const sheet = new KeySheet(session.tools);
   let modeller: Modeller | null = null;
@@ -128,37 +128,37 @@ function start(app: HTMLElement): void {
     voice,
     ...livePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
   ];
-  keepSearches(panels, session.kept);
+  preserveSearches(panels, session.memory);
   const dock = new Dock(dockBox, panels, new Layouts(browserStorage()), browserStorage());
-  keepCurrent(dock, session);
+  followAvailability(dock, session);
   new FilePanels(connection, dock);
 
-  session.description.placeAsked.on(({ file, line, display, name }) => {
+  session.description.placeRequested.on(({ file, line, display, name }) => {
     dock.open("source");
     source.reveal(file, line, { display, name });
   });
 
-  session.words.enrolWanted.on(() => {
+  session.words.enrolRequested.on(() => {
     dock.open("voice");
     voice.enrolHere();
   });
 
-  session.editing.wanted.on(() => dock.open("editing"));
+  session.editing.editRequested.on(() => dock.open("editing"));
 
   const stage = makeStage(scene.container, session, dock.displayPanels, theme);
-  if (stage) scene.lieOver(stage.room);
-  commands.takeKeys();
-  const toolbox = stage && takeTools(stage, session, (event) => {
+  if (stage) scene.connectScene(stage.freeRoom);
+  commands.bindKeys();
+  const toolbox = stage && connectTools(stage, session, (event) => {
     if (handles?.pointer(event)) return null;
     return modeller ? modeller.pointer(event) : event;
   });
   if (stage) {
-    whenModelling(stage, session, (made) => (modeller = made));
-    whenEditing(stage, session, (made) => (handles = made));
+    loadModeller(stage, session, (made) => (modeller = made));
+    loadPartHandles(stage, session, (made) => (handles = made));
   }
   const files = new FileCommands(session.configuration);
   app.prepend(new TitleBar(session, dock, files, new RecordingDrop(session, tokens), theme, new ShareMenu(session, stage, tokens)).element);
-  takeFileKeys(session, files);
+  bindFileKeys(session, files);
   const fold = new TimeFold(session.time, dock.strip);
   app.append(h("div", { class: "foot" }, new TimelineBar(session).element, fold.element, new StatusBar(session, stage).element));
   document.body.append(door.element);
@@ -167,7 +167,7 @@ function start(app: HTMLElement): void {
     const typing = event.target instanceof HTMLInputElement || event.target instanceof HTMLTextAreaElement;
     if (event.key === "?" && !typing) sheet.toggle();
   });
-  takeTalkKey(session.voice, TAKES_LETTERS);
+  bindTalkKey(session.voice, TAKES_LETTERS);
   publishInspection(session, stage, toolbox, {
     source: () => source.inspect(),
     diagram: () => diagram.inspect(),
@@ -186,37 +186,38 @@ function addressBar(): AddressBar {
   };
 }
 
-/** The panels that depend on what there is, whichever arrangement is shown. */
-function keepCurrent(dock: Dock, session: Session): void {
-  const keepJoints = follow(dock, "joints", () => session.joints.controls !== null);
-  const keepWorld = follow(dock, "world", () => session.modelling.active);
-  const keepComparison = follow(dock, "comparison", () => session.comparison.compared !== null);
+/** Opens and closes the panels that depend on available data, in whichever arrangement is shown. */
+function followAvailability(dock: Dock, session: Session): void {
+  const followJoints = openWhile(dock, "joints", () => session.joints.controls !== null);
+  const followWorld = openWhile(dock, "world", () => session.modelling.active);
+  const followComparison = openWhile(dock, "comparison", () => session.comparison.compared !== null);
   const { displays } = session;
-  const keepDisplays = (): void => dock.displayPanels.keep(displays.displays.map(({ id }) => id));
-  const countFindings = (): void => dock.setCount("diagnostics", session.diagnostics.length + displays.failing);
-  const countSoon = coalesced(countFindings);
-  session.joints.controlsChanged.on(keepJoints);
-  session.modelling.changed.on(keepWorld);
-  session.comparison.changed.on(keepComparison);
-  displays.treeChanged.on(keepDisplays);
+  const pruneDisplayPanels = (): void => dock.displayPanels.prune(displays.displays.map(({ id }) => id));
+  const countFindings = (): void => dock.setCount("diagnostics", session.diagnostics.length + displays.failingCount);
+  const countBeforePaint = coalesced(countFindings);
+  session.joints.controlsChanged.on(followJoints);
+  session.modelling.changed.on(followWorld);
+  session.comparison.changed.on(followComparison);
+  displays.treeChanged.on(pruneDisplayPanels);
   session.diagnosticsChanged.on(countFindings);
-  displays.treeChanged.on(countSoon);
-  displays.statusChanged.on(countSoon);
-  displays.enabledChanged.on(countSoon);
-  dock.rearranged.on(() => {
-    keepJoints();
-    keepWorld();
-    keepComparison();
-    keepDisplays();
+  displays.treeChanged.on(countBeforePaint);
+  displays.statusChanged.on(countBeforePaint);
+  displays.enabledChanged.on(countBeforePaint);
+  dock.arrangementReplaced.on(() => {
+    followJoints();
+    followWorld();
+    followComparison();
+    pruneDisplayPanels();
     countFindings();
   });
 }
 
 /**
- * What opens a panel when there is something for it, and closes it when there no longer is: a moment later, since a
- * program that was started again has it soon, and the panel then is where the user had put it.
+ * Returns a function that opens a panel when there is something to show in it, and closes it when there no longer is.
+ * Closing waits a moment: a program that is restarted has something to show again soon, and the panel then stays where
+ * the user put it.
  */
-function follow(dock: Dock, id: PanelId, hasSomething: () => boolean): () => void {
+function openWhile(dock: Dock, id: PanelId, hasSomething: () => boolean): () => void {
   let closing: ReturnType<typeof setTimeout> | undefined;
   return () => {
     clearTimeout(closing);
@@ -225,8 +226,8 @@ function follow(dock: Dock, id: PanelId, hasSomething: () => boolean): () => voi
   };
 }
 
-/** Mouse and keys for the scene. */
-function takeTools(stage: Stage, session: Session, model: (event: ToolEvent) => ToolEvent | null): Toolbox {
+/** Connects mouse and keys to the scene. */
+function connectTools(stage: Stage, session: Session, model: (event: ToolEvent) => ToolEvent | null): Toolbox {
   const toolbox = new Toolbox(stage, session);
   const joints = new JointDrag(stage, session);
   const worlds = new WorldHandling(stage, session);
@@ -239,8 +240,8 @@ function takeTools(stage: Stage, session: Session, model: (event: ToolEvent) => 
   return toolbox;
 }
 
-/** Fetches what models the world when that is asked for first. */
-function whenModelling(stage: Stage, session: Session, made: (modeller: Modeller) => void): void {
+/** Loads the code for modelling the world when it is needed first. */
+function loadModeller(stage: Stage, session: Session, made: (modeller: Modeller) => void): void {
   const stop = session.modelling.changed.on(() => {
     if (!session.modelling.active) return;
     stop();
@@ -248,8 +249,8 @@ function whenModelling(stage: Stage, session: Session, made: (modeller: Modeller
   });
 }
 
-/** Fetches the handles of a robot's parts when one is edited first. */
-function whenEditing(stage: Stage, session: Session, made: (handles: PartHandles) => void): void {
+/** Loads the handles of a robot's parts when one is edited first. */
+function loadPartHandles(stage: Stage, session: Session, made: (handles: PartHandles) => void): void {
   const stop = session.editing.changed.on(() => {
     if (!session.editing.active) return;
     stop();
@@ -257,8 +258,11 @@ function whenEditing(stage: Stage, session: Session, made: (handles: PartHandles
   });
 }
 
-/** The keys of the File menu, and undo: they work everywhere but in dialogs; where text is typed, undo is the text's. */
-function takeFileKeys(session: Session, files: FileCommands): void {
+/**
+ * Binds the keys of the File menu, and undo. They work everywhere except in dialogs; in a text field, undo belongs to
+ * the field.
+ */
+function bindFileKeys(session: Session, files: FileCommands): void {
   const { configuration } = session;
   const keys = [
     { shortcut: SHORTCUTS.save, run: () => files.save() },
@@ -268,7 +272,7 @@ function takeFileKeys(session: Session, files: FileCommands): void {
     { shortcut: SHORTCUTS.redo, run: () => configuration.redo(), text: true },
     { shortcut: SHORTCUTS.redoToo, run: () => configuration.redo(), text: true },
   ];
-  const taken = (event: KeyboardEvent): void => {
+  const onKeyDown = (event: KeyboardEvent): void => {
     const target = event.target instanceof Element ? event.target : null;
     const found = keys.find(({ shortcut }) => matches(event, shortcut));
     if (!found || target?.closest("dialog")) return;
@@ -277,11 +281,11 @@ function takeFileKeys(session: Session, files: FileCommands): void {
     event.stopPropagation();
     found.run();
   };
-  // Before a field that is edited keeps its keys to itself: the browser would save the page.
-  document.addEventListener("keydown", taken, true);
+  // Capture the event: a field that is edited stops keys from bubbling, and the browser would save the page.
+  document.addEventListener("keydown", onKeyDown, true);
 }
 
-/** Without WebGL everything else still works. */
+/** Creates the scene; returns null without WebGL, where everything else still works. */
 function makeStage(container: HTMLElement, session: Session, panels: PanelHost, theme: ThemeState): Stage | null {
   try {
     return new Stage(container, session, panels, theme, SERVED, new StandIns(standInWorker));
@@ -292,7 +296,7 @@ function makeStage(container: HTMLElement, session: Session, panels: PanelHost, 
   }
 }
 
-/** Vite makes a file of its own of a worker that is named so. */
+/** Starts the worker. The expression must have this form for Vite to bundle the worker as a separate file. */
 function standInWorker(): Worker {
   return new Worker(new URL("./scene/meshes/stand-in-worker.ts", import.meta.url), { type: "module" });
 }

@@ -1,8 +1,8 @@
-/** A typed list of listeners. */
+/** A typed event with listeners. */
 export class Signal<T = void> {
   private readonly listeners = new Set<(value: T) => void>();
 
-  /** Calls `listener` on every emit until the returned function is called. */
+  /** Calls `listener` on every `emit`, until the returned function is called. */
   on(listener: (value: T) => void): () => void {
     this.listeners.add(listener);
     return () => this.listeners.delete(listener);

@@ -1,41 +1,41 @@
-/** The storage of the page's settings. */
+/** The storage for the page's settings. */
 export type TextStorage = Pick<Storage, "getItem" | "setItem">;
 
 export interface BrowserStorage extends TextStorage {
   removeItem(key: string): void;
-  /** Whether it outlives a reload. */
-  readonly lasts: boolean;
+  /** Whether the storage survives a reload of the page. */
+  readonly isPersistent: boolean;
 }
 
 /**
- * The browser's storage from visit to visit, or with `sessionStorage` as long as a tab is open; where there is none, or
- * the user forbids it, one that lasts as long as the page.
+ * Returns the browser's storage: across visits, or with `sessionStorage` while a tab is open. If there is none, or the
+ * user forbids it, the storage lasts only while the page is open.
  */
 export function browserStorage(which: "localStorage" | "sessionStorage" = "localStorage"): BrowserStorage {
   try {
     const storage = (globalThis as Partial<Record<typeof which, Storage>>)[which];
-    if (storage) return kept(storage);
+    if (storage) return persistent(storage);
   } catch {
-    // Forbidden by the browser's settings.
+    // The browser's settings forbid it.
   }
   const texts = new Map<string, string>();
   return {
-    lasts: false,
+    isPersistent: false,
     getItem: (key) => texts.get(key) ?? null,
     setItem: (key, text) => void texts.set(key, text),
     removeItem: (key) => void texts.delete(key),
   };
 }
 
-function kept(storage: Storage): BrowserStorage {
+function persistent(storage: Storage): BrowserStorage {
   return {
-    lasts: true,
+    isPersistent: true,
     getItem: (key) => storage.getItem(key),
     setItem: (key, text) => {
       try {
         storage.setItem(key, text);
       } catch {
-        // It is full.
+        // The storage is full.
       }
     },
     removeItem: (key) => storage.removeItem(key),

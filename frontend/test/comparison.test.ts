@@ -2,7 +2,7 @@ import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { ComparedDescriptions, ComparedItem } from "../src/protocol";
 import { shortPlace } from "../src/panels/place";
-import { ComparisonState, grouped, MARK_COLORS, marksIn } from "../src/state/comparison";
+import { ComparisonState, groupDifferences, MARK_COLORS, marksIn } from "../src/state/comparison";
 
 function item(part: Partial<ComparedItem> = {}): ComparedItem {
   return {
@@ -20,7 +20,7 @@ const TOLD: ComparedDescriptions & { type: "compared_descriptions" } = {
   items: [item(), item({ property: "origin xyz" }), item({ subject: "joint" }), item({ name: "camera", kind: "removed", property: "", element: "camera", in_old: true })],
 };
 
-describe("places of descriptions", () => {
+describe("sources of descriptions", () => {
   it.each([
     ["HEAD:robots/arm/urdf/arm.urdf:3:1", "HEAD:…/urdf/arm.urdf:3:1"],
     ["HEAD:arm.urdf:3:1", "HEAD:arm.urdf:3:1"],
@@ -42,25 +42,25 @@ describe("two descriptions in one scene", () => {
     connection.message.emit(TOLD);
   });
 
-  it("draws all of the old robot in one colour, behind the new one, and what is gone more firmly in its own", () => {
-    const ghost = comparison.instead("display-2", "arm");
-    const gone = comparison.instead("display-2", "camera");
+  it("draws the old robot in one colour, behind the new one, and removed links more opaque in a colour of their own", () => {
+    const ghost = comparison.overrideOf("display-2", "arm");
+    const gone = comparison.overrideOf("display-2", "camera");
     expect(ghost).toMatchObject({ behind: true, firm: false });
     expect(gone).toMatchObject({ behind: true, firm: true });
     expect(gone?.color.map((part) => Math.round(part * 255))).toEqual([0xcc, 0x33, 0x77]);
     expect(comparison.isOld("display-2")).toBe(true);
   });
 
-  it("draws of the new robot only what differs in another colour, and nothing when marks are off", () => {
-    expect(comparison.instead("display-1", "arm")?.behind).toBeUndefined();
-    expect(comparison.instead("display-1", "base")).toBeNull();
-    expect(comparison.instead("display-7", "arm")).toBeNull();
+  it("colours only the differences of the new robot, and nothing while marks are off", () => {
+    expect(comparison.overrideOf("display-1", "arm")?.behind).toBeUndefined();
+    expect(comparison.overrideOf("display-1", "base")).toBeNull();
+    expect(comparison.overrideOf("display-7", "arm")).toBeNull();
     const changed = vi.fn();
     comparison.changed.on(changed);
     comparison.marks = false;
     expect(changed).toHaveBeenCalledTimes(1);
-    expect(comparison.instead("display-1", "arm")).toBeNull();
-    expect(comparison.instead("display-2", "camera")).toEqual(comparison.instead("display-2", "arm"));
+    expect(comparison.overrideOf("display-1", "arm")).toBeNull();
+    expect(comparison.overrideOf("display-2", "camera")).toEqual(comparison.overrideOf("display-2", "arm"));
   });
 
   it("names the link or joint that shows a difference, in the robot that has it", () => {
@@ -70,21 +70,21 @@ describe("two descriptions in one scene", () => {
     expect(comparison.elementOf(item({ element: "" }))).toBeNull();
   });
 
-  it("knows nothing of a program that it was not told of", () => {
+  it("has no legend for a program that did not announce itself", () => {
     connection.message.emit({ type: "hello", protocol: 1, version: "", title: "", run: "1" });
     expect(comparison.compared).toBeNull();
-    expect(comparison.instead("display-2", "arm")).toBeNull();
+    expect(comparison.overrideOf("display-2", "arm")).toBeNull();
     expect(comparison.isOld("")).toBe(false);
   });
 
-  it("puts differences about one thing together, and into the legend what there is", () => {
-    const groups = grouped(TOLD.items);
+  it("groups the differences of one element, and lists only kinds that occur in the legend", () => {
+    const groups = groupDifferences(TOLD.items);
     expect(groups.map(({ items, kind }) => [items.length, kind])).toEqual([[2, "changed"], [1, "changed"], [1, "removed"]]);
     expect(marksIn([TOLD.new, TOLD.old])).toEqual(["changed", "removed", "old"]);
   });
 });
 
-/** Machado, Oliveira and Fernandes (2009), severity 1: what linear colours look like to those who lack a cone. */
+/** Machado, Oliveira and Fernandes (2009), severity 1: how people without one type of cone see linear colours. */
 const SIGHT: Readonly<Record<string, readonly (readonly number[])[]>> = {
   all: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
   "no red": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
@@ -96,7 +96,7 @@ function times(matrix: readonly (readonly number[])[], vector: readonly number[]
   return matrix.map((row) => row.reduce((sum, each, i) => sum + each * (vector[i] ?? 0), 0));
 }
 
-/** CIE L*a*b* of a colour, as some see it. */
+/** Returns CIE L*a*b* of a colour as seen with a colour vision deficiency. */
 function lab(hex: string, sight: readonly (readonly number[])[]): number[] {
   const linear = [1, 3, 5].map((from) => {
     const part = parseInt(hex.slice(from, from + 2), 16) / 255;

@@ -54,7 +54,7 @@ function opened(): { connection: Connection; socket: FakeSocket } {
   return { connection, socket: FakeSocket.made[0]! };
 }
 
-function page(href: string, stored?: string, lasts = true): { tokens: Tokens; storage: BrowserStorage; address: AddressBar } {
+function page(href: string, stored?: string, isPersistent = true): { tokens: Tokens; storage: BrowserStorage; address: AddressBar } {
   const address = {
     href,
     moveTo(next: string) {
@@ -63,7 +63,7 @@ function page(href: string, stored?: string, lasts = true): { tokens: Tokens; st
   };
   const texts = new Map(stored === undefined ? [] : [["linkwright.token", stored]]);
   const storage = {
-    lasts,
+    isPersistent,
     getItem: (key: string) => texts.get(key) ?? null,
     setItem: (key: string, text: string) => void texts.set(key, text),
     removeItem: (key: string) => void texts.delete(key),
@@ -72,34 +72,34 @@ function page(href: string, stored?: string, lasts = true): { tokens: Tokens; st
 }
 
 describe("the token", () => {
-  it("goes from the address into the browser's storage when it was let in, not before", () => {
+  it("moves from the address to the browser's storage only after the server has accepted it", () => {
     const { tokens, storage, address } = page("http://localhost:7447/?token=abc&displays=own#x");
     expect(tokens.current).toBe("abc");
     expect(storage.getItem("linkwright.token")).toBeNull();
-    tokens.accepted("abc");
+    tokens.accept("abc");
     expect(address.href).toBe("http://localhost:7447/?displays=own#x");
     expect(new Tokens(address, storage).current).toBe("abc");
     expect(tokens.link).toBe("http://localhost:7447/?displays=own&token=abc#x");
   });
 
-  it("stays in the address where the browser keeps nothing", () => {
+  it("stays in the address if the browser stores nothing", () => {
     const { tokens, address } = page("http://localhost:7447/?token=abc", undefined, false);
-    tokens.accepted("abc");
+    tokens.accept("abc");
     expect(address.href).toBe("http://localhost:7447/?token=abc");
   });
 
-  it("of the address comes first, and that of an old address takes nothing away", () => {
+  it("in the address has priority, and an outdated one in the address does not delete the stored one", () => {
     const { tokens, storage } = page("http://localhost:7447/?token=old", "good");
     expect(tokens.current).toBe("old");
-    expect(tokens.refused()).toBe(true);
+    expect(tokens.refuse()).toBe(true);
     expect(tokens.current).toBe("good");
-    tokens.accepted("good");
+    tokens.accept("good");
     expect(tokens.current).toBe("good");
     expect(storage.getItem("linkwright.token")).toBe("good");
-    expect(tokens.refused()).toBe(false);
+    expect(tokens.refuse()).toBe(false);
   });
 
-  it("is found in an address, or is the text", () => {
+  it("is extracted from an address, or is the text itself", () => {
     expect(tokenOf(" http://127.0.0.1:7447/?token=a-b_c\n")).toBe("a-b_c");
     expect(tokenOf("Viewer: http://127.0.0.1:7447/?token=abc")).toBe("abc");
     expect(tokenOf("0123456789abcdef_-AB")).toBe("0123456789abcdef_-AB");
@@ -110,7 +110,7 @@ describe("the token", () => {
 });
 
 describe("the connection", () => {
-  it("is connected after the greeting and hands on both kinds of messages", () => {
+  it("is connected after the handshake and passes on both kinds of messages", () => {
     const { connection, socket } = opened();
     const [message, transforms] = [vi.fn(), vi.fn()];
     connection.message.on(message);
@@ -123,7 +123,7 @@ describe("the connection", () => {
     expect(transforms).toHaveBeenCalledOnce();
   });
 
-  it("acknowledges the greeting and whatever is large", () => {
+  it("acknowledges the handshake and large messages", () => {
     const { socket } = opened();
     socket.hello();
     socket.onmessage?.({ data: packed(1, [[0, 0, 0, 0, 0, 0, 1]], [0]) });
@@ -132,7 +132,7 @@ describe("the connection", () => {
     expect(counts).toEqual([{ type: "received", count: 1 }, { type: "received", count: 3 }]);
   });
 
-  it("comes back with growing pauses", () => {
+  it("reconnects with growing delays", () => {
     const { connection, socket } = opened();
     socket.hello();
     socket.onclose?.({ code: 1006 });
@@ -148,14 +148,14 @@ describe("the connection", () => {
     expect(connection.state).toBe("connected");
   });
 
-  it("knows a server that ended from a line that broke", () => {
+  it("distinguishes a server that has ended from a broken connection", () => {
     const { connection, socket } = opened();
     socket.hello();
     socket.onclose?.({ code: 1001 });
     expect(connection.state).toBe("ended");
   });
 
-  it("says so when a program is there that does not know the page", async () => {
+  it("reports a program that does not know the page's token", async () => {
     const asked = vi.fn<(page: URL) => Promise<{ status: number }>>(() => Promise.resolve({ status: 401 }));
     vi.stubGlobal("fetch", asked);
     const { connection, socket } = opened();
@@ -168,7 +168,7 @@ describe("the connection", () => {
     expect(connection.state).toBe("refused");
   });
 
-  it("tries every token it knows before it says that it is refused, and goes on trying", async () => {
+  it("tries all known tokens before it reports a refusal, and keeps trying", async () => {
     vi.stubGlobal("fetch", () => Promise.resolve({ status: 401 }));
     const { tokens, storage } = page("http://127.0.0.1/?token=new", "old");
     const connection = new Connection("ws://127.0.0.1/ws", tokens);
@@ -192,7 +192,7 @@ describe("the connection", () => {
     expect(shown).toContain("of-another-tab");
   });
 
-  it("asks nobody without a token, until another page of the browser has one", () => {
+  it("does not connect without a token until another page of the browser has one", () => {
     const { tokens, storage } = page("http://127.0.0.1/");
     const connection = new Connection("ws://127.0.0.1/ws", tokens);
     connection.open();
@@ -208,7 +208,7 @@ describe("the connection", () => {
   describe("after the program has ended", () => {
     const token = "a".repeat(32);
 
-    /** A page that was let in and lost its server, and what it asks whoever answers with `answer`. */
+    /** A page that was connected and lost its server; returns what it asks the server that answers with `answer`. */
     async function comingBack(answer: (nonce: string) => Promise<string>) {
       const asked: string[] = [];
       vi.stubGlobal("fetch", async (url: URL) => {
@@ -233,7 +233,7 @@ describe("the connection", () => {
       return Array.from(made, (byte) => byte.toString(16).padStart(2, "0")).join("");
     }
 
-    /** Replaces the browser's own, which computes in threads: the clock of the test does not wait for them, and they end in the next one. */
+    /** Replaces the browser's digest, which runs in threads: the test's clock does not wait for these, and they would end in the next test. */
     function computeAtOnce(): void {
       const subtle = {
         importKey: (_format: string, key: Uint8Array) => Promise.resolve(key),
@@ -243,7 +243,7 @@ describe("the connection", () => {
       vi.stubGlobal("crypto", { subtle, getRandomValues: (bytes: Uint8Array<ArrayBuffer>) => crypto.getRandomValues(bytes) });
     }
 
-    it("comes back to the one that proves to know the token", async () => {
+    it("reconnects to a program that proves that it knows the token", async () => {
       const { connection, asked } = await comingBack(proofOf);
       await vi.waitFor(() => expect(FakeSocket.made).toHaveLength(2));
       FakeSocket.made[1]!.hello();
@@ -251,7 +251,7 @@ describe("the connection", () => {
       expect(asked[0]).toMatch(/^http:\/\/127\.0\.0\.1\/proof\?nonce=[0-9a-f]{32}$/);
     });
 
-    it("tells the token to no other, and says that the program is another", async () => {
+    it("never sends the token to another program, and reports that it is another", async () => {
       computeAtOnce();
       const answers = ["", "<html>", "0".repeat(64), await proofOf("0".repeat(32))];
       for (const answer of answers) {
@@ -263,7 +263,7 @@ describe("the connection", () => {
       }
     });
 
-    it("asks again, never with the same number, while nobody answers, and at once when it is seen again", async () => {
+    it("asks again with a new number while there is no answer, and at once when the page becomes visible", async () => {
       computeAtOnce();
       const { connection, asked } = await comingBack(() => Promise.reject(new Error("nobody")));
       await vi.advanceTimersByTimeAsync(10_000);
@@ -271,13 +271,13 @@ describe("the connection", () => {
       expect(connection.state).toBe("ended");
       expect(new Set(asked).size).toBe(asked.length);
       const before = asked.length;
-      connection.hurry();
+      connection.retryNow();
       await vi.advanceTimersByTimeAsync(0);
       expect(asked).toHaveLength(before + 1);
     });
   });
 
-  it("reloads the page once when the server speaks another version", () => {
+  it("reloads the page once if the server has another protocol version", () => {
     const first = opened();
     first.socket.hello(PROTOCOL_VERSION + 1);
     expect(reload).toHaveBeenCalledOnce();
@@ -290,7 +290,7 @@ describe("the connection", () => {
 });
 
 describe("the socket's address", () => {
-  it("stands beside the page", () => {
+  it("is relative to the page", () => {
     expect(socketUrl("http://127.0.0.1:7447/?token=abc")).toBe("ws://127.0.0.1:7447/ws");
     expect(socketUrl("https://lab.example/robots/mbot/")).toBe("wss://lab.example/robots/mbot/ws");
     expect(socketUrl("http://127.0.0.1:7447/", null, "zh")).toBe("ws://127.0.0.1:7447/ws?language=zh");

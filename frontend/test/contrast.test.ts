@@ -4,7 +4,7 @@ import css from "../src/styles/theme.css?raw";
 
 type Rgb = readonly [number, number, number];
 
-/** The variables of a rule, over those of the dark theme. */
+/** Returns the variables of a rule, on top of those of the dark theme. */
 function variables(selector: string): Map<string, string> {
   const found = new Map<string, string>();
   for (const name of [":root", selector]) {
@@ -61,18 +61,18 @@ describe.each([
     expect(contrast(at(text), at("--bg-field"))).toBeGreaterThanOrEqual(4.5);
   });
 
-  it("a selected row can be read", () => {
+  it("a selected row is readable", () => {
     const row = at("--accent-wash", at("--bg-panel"));
     for (const text of ["--text", "--text-soft", "--warn", "--error"]) {
       expect(contrast(at(text), row), text).toBeGreaterThanOrEqual(4.5);
     }
   });
 
-  it("what stands on the accent can be read", () => {
+  it("text on the accent colour is readable", () => {
     expect(contrast(at("--text-on-accent"), at("--accent-deep"))).toBeGreaterThanOrEqual(4.5);
   });
 
-  it("what lies over the scene can be read whatever is in the scene", () => {
+  it("elements over the scene are readable over any content", () => {
     for (const scene of [[0, 0, 0], [48, 48, 48], [255, 255, 255]] as const) {
       expect(contrast(at("--text"), at("--bg-overlay", scene))).toBeGreaterThanOrEqual(4.5);
       expect(contrast(at("--text"), at("--bg-error", scene))).toBeGreaterThanOrEqual(4.5);
@@ -87,7 +87,7 @@ describe.each([
     for (const background of BACKGROUNDS) expect(contrast(at(thumb), at(background)), background).toBeGreaterThanOrEqual(3);
   });
 
-  it("fields, boxes and sliders have these edges", () => {
+  it("edges of fields, boxes and sliders are visible", () => {
     for (const rule of [".field,\n.choice", ".check", ".slider::-moz-range-thumb", ".slider::-webkit-slider-thumb"]) {
       const start = controls.indexOf(`\n${rule} {`);
       expect(controls.slice(start, controls.indexOf("\n}", start)), rule).toMatch(/1px (solid )?var\(--edge\)/);

@@ -1,7 +1,7 @@
 import { expect, test } from "vitest";
 import { unpackData } from "../src/connection/data";
 
-/** A frame as `pack_data` of page/protocol/message.py packs it. */
+/** Packs a frame like `pack_data` of page/protocol/message.py. */
 function packed(header: object, arrays: readonly ArrayBufferView[]): ArrayBuffer {
   const pad = (length: number): number => Math.ceil(length / 8) * 8;
   const text = new TextEncoder().encode(JSON.stringify(header));
@@ -19,7 +19,7 @@ function packed(header: object, arrays: readonly ArrayBufferView[]): ArrayBuffer
   return bytes.buffer;
 }
 
-test("content comes with its arrays where the header has references", () => {
+test("content is decoded with its arrays in place of references", () => {
   const content = { kind: "point_marks", positions: { $: ["f4", 0, 3] }, colors: [{ $: ["u1", 16, 2] }] };
   const header = { display: "display-1", key: "", frame: "", stamp: 1.5, pose: null, content };
   const data = unpackData(packed(header, [new Float32Array([1, 2, 3]), new Uint8Array([7, 8])]));
@@ -29,7 +29,7 @@ test("content comes with its arrays where the header has references", () => {
   });
 });
 
-test("arrays are put into objects in lists, and lists of numbers stay as they are", () => {
+test("arrays are restored in objects within lists, and lists of numbers stay unchanged", () => {
   const marker = { id: "a/1", pose: [1, 2, 3], points: { $: ["f4", 0, 3] }, mesh: null };
   const other = { ...marker, id: "a/2", points: { $: ["f4", 16, 1] }, mesh: { data: { $: ["u1", 0, 0] } } };
   const header = { display: "d", key: "k", frame: "", stamp: 0, pose: [0, 0, 0, 0, 0, 0, 1], content: { markers: [marker, other] } };
@@ -41,7 +41,7 @@ test("arrays are put into objects in lists, and lists of numbers stay as they ar
   expect(data).toEqual({ ...header, content: { markers } });
 });
 
-test("what is no data of a display is not taken for it", () => {
+test("frames of other kinds are not taken for display data", () => {
   expect(unpackData(new ArrayBuffer(3))).toBeNull();
   expect(unpackData(new ArrayBuffer(64))).toBeNull();
 });

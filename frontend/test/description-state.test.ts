@@ -7,9 +7,9 @@ import { AngleUnits } from "../src/state/angle-unit";
 import { DescriptionModel } from "../src/state/description-model";
 import { layOut } from "../src/state/diagram-layout";
 import { InspectState } from "../src/state/inspect";
-import { cells, sorted } from "../src/state/joint-table";
-import { flattened, LinkTreeState } from "../src/state/link-tree";
-import { general } from "../src/state/number-text";
+import { cellTexts, sortJoints } from "../src/state/joint-table";
+import { visibleRows, LinkTreeState } from "../src/state/link-tree";
+import { formatGeneral } from "../src/state/number-text";
 import { Session } from "../src/state/session";
 import { browserStorage } from "../src/storage";
 import { display, robot, tree } from "./messages";
@@ -81,7 +81,7 @@ function changed(revision: number, links: string[] = [], joints: string[] = []):
 }
 
 describe("the description", () => {
-  it("is asked for while somebody holds it, and not again while it is current", () => {
+  it("is requested while something uses it, and not again while it is current", () => {
     receive(changed(1));
     expect(sent).toEqual([]);
     const release = session.description.hold();
@@ -99,14 +99,14 @@ describe("the description", () => {
     expect(sent).toHaveLength(3);
   });
 
-  it("tells what an edit changed", () => {
+  it("reports what an edit has changed", () => {
     const edits: unknown[] = [];
     session.description.edited.on((change) => edits.push(change));
     receive(changed(1), changed(2, ["left"], ["turn"]));
     expect(edits).toEqual([{ display: "d1", links: ["left"], joints: ["turn"] }]);
   });
 
-  it("asks for a text once, and anew when it may be another", () => {
+  it("requests a text once, and again when it may have changed", () => {
     const { description: texts } = session;
     expect(texts.text("d1", "")).toBeUndefined();
     expect(texts.text("d1", "")).toBeUndefined();
@@ -119,14 +119,14 @@ describe("the description", () => {
   });
 });
 
-describe("the element that panels are about", () => {
+describe("the element that panels show", () => {
   beforeEach(() => {
     const scene = robot("d1", "base", "left");
     scene.links[1]!.parent_joint = "turn";
     receive(tree(display({ id: "d1", cls: "rviz_default_plugins/RobotModel" })), scene);
   });
 
-  it("is a joint until another link is selected; the scene shows the link that it moves", () => {
+  it("is a joint until another link is selected; the scene highlights the link that it moves", () => {
     const { focus, selection } = session;
     focus.select({ display: "d1", kind: "joint", name: "turn" });
     expect(selection.selected?.link.name).toBe("left");
@@ -144,7 +144,7 @@ describe("the element that panels are about", () => {
 describe("the model", () => {
   const model = new DescriptionModel(description());
 
-  it("is a tree with depths and places", () => {
+  it("is a tree with depths and positions in the source", () => {
     expect(model.jointsBelow("base").map((each) => each.name)).toEqual(["lift", "turn"]);
     expect([model.depthOf("base"), model.depthOf("tip"), model.deepest]).toEqual([0, 2, 2]);
     expect(model.elementsAt("m.xacro", 4).map((each) => each.name)).toEqual(["left", "right"]);
@@ -152,15 +152,15 @@ describe("the model", () => {
     expect(model.elementsAt("other", 4)).toEqual([]);
   });
 
-  it("is listed as folds and search want it", () => {
+  it("is listed according to folded links and the search text", () => {
     const state = new LinkTreeState();
-    const names = (search = ""): string[] => flattened(model, state, search).map((row) => row.link.name);
+    const names = (search = ""): string[] => visibleRows(model, state, search).map((row) => row.link.name);
     expect(names()).toEqual(["base", "right", "left", "tip"]);
     state.toggle("left");
     expect(names()).toEqual(["base", "right", "left"]);
     expect(names("FIX")).toEqual(["base", "left", "tip"]);
     expect(names("no such")).toEqual([]);
-    state.open(model, "tip");
+    state.reveal(model, "tip");
     expect(names()).toHaveLength(4);
   });
 
@@ -176,16 +176,16 @@ describe("the model", () => {
     expect(of("turn").y).toBeLessThan(of("left").y);
   });
 
-  it("has two joints above a link only as far as urdfdom has", () => {
+  it("ignores a second joint that moves the same link, as urdfdom does", () => {
     const both = description({ joints: [joint("a", "base", "left"), joint("turn", "base", "left")] });
     expect(new DescriptionModel(both).jointsBelow("base").map((each) => each.name)).toEqual(["turn"]);
   });
 });
 
 describe("numbers", () => {
-  it("are written as C++ streams write them", () => {
+  it("are formatted like those of C++ streams", () => {
     const values = [0, -0, 1, 0.1, -0.095, 1.5707963267948966, 123456, 1234567, 0.0001, 0.00001234, 1e-20, 1e21, 0.30000000000000004];
-    expect(values.map(general)).toEqual(
+    expect(values.map(formatGeneral)).toEqual(
       "0 -0 1 0.1 -0.095 1.5708 123456 1.23457e+06 0.0001 1.234e-05 1e-20 1e+21 0.3".split(" "),
     );
   });
@@ -197,35 +197,35 @@ describe("the joint table", () => {
     table: { damping: (value: string) => `d ${value}`, friction: (value: string) => `f ${value}` },
   };
 
-  it("has units, in degrees where the user wants them", () => {
+  it("has units, with degrees on request", () => {
     const angles = new AngleUnits(browserStorage());
     const one = joint("a", "b", "c", { damping: 0.5, mimic: { joint: "m", multiplier: -1, offset: Math.PI / 2 } });
-    expect(cells(one, angles, words)).toMatchObject({ lower: "-1 rad", effort: "4 N m", dynamics: "d 0.5", mimic: "−m + 1.571 rad" });
+    expect(cellTexts(one, angles, words)).toMatchObject({ lower: "-1 rad", effort: "4 N m", dynamics: "d 0.5", mimic: "−m + 1.571 rad" });
     angles.current = "deg";
-    expect(cells(one, angles, words)).toMatchObject({ upper: "114.6 deg", velocity: "171.9 deg/s", mimic: "−m + 90 deg" });
-    expect(cells({ ...one, kind: "prismatic" }, angles, words)).toMatchObject({ lower: "-1 m", effort: "4 N" });
+    expect(cellTexts(one, angles, words)).toMatchObject({ upper: "114.6 deg", velocity: "171.9 deg/s", mimic: "−m + 90 deg" });
+    expect(cellTexts({ ...one, kind: "prismatic" }, angles, words)).toMatchObject({ lower: "-1 m", effort: "4 N" });
   });
 
-  it("sorts by number or name, and puts what has none last", () => {
+  it("sorts by number or name, with empty values last", () => {
     const joints = [joint("j10", "b", "c", { upper: null }), joint("j2", "b", "c", { upper: 1 }), joint("j1", "b", "c", { upper: 10 })];
-    const names = (column: "name" | "upper", down = false): string[] => sorted(joints, column, down).map((each) => each.name);
+    const names = (column: "name" | "upper", down = false): string[] => sortJoints(joints, column, down).map((each) => each.name);
     expect(names("name")).toEqual(["j1", "j2", "j10"]);
     expect(names("upper")).toEqual(["j2", "j1", "j10"]);
     expect(names("upper", true)).toEqual(["j1", "j2", "j10"]);
   });
 });
 
-describe("what is to be seen of the invisible", () => {
-  it("is remembered, and rubbish is no memory", () => {
+describe("the switches of invisible properties", () => {
+  it("are stored, and invalid stored values are ignored", () => {
     const storage = browserStorage();
     const state = new InspectState(storage);
-    expect(state.any).toBe(false);
+    expect(state.isActive).toBe(false);
     state.set("joints", true);
     state.scale = 2;
     const again = new InspectState(storage);
     expect([again.current.joints, again.current.boxes, again.scale]).toEqual([true, false, 2]);
     storage.setItem("linkwright.inspect", '{"joints": 5, "scale": -1');
-    expect(new InspectState(storage).any).toBe(false);
+    expect(new InspectState(storage).isActive).toBe(false);
   });
 });
 
@@ -233,7 +233,7 @@ describe("dragging a link", () => {
   const towards = (from: Vector3, to: Vector3): Ray => new Ray(from, to.clone().sub(from).normalize());
   const z = new Vector3(0, 0, 1);
 
-  it("turns it so that the point that was grabbed stays under the pointer", () => {
+  it("rotates it so that the grabbed point stays under the pointer", () => {
     const eye = new Vector3(0, 0, 5);
     const grabbed = new Vector3(1, 0, 0);
     for (const angle of [0.3, -0.7, 1.2]) {
@@ -242,7 +242,7 @@ describe("dragging a link", () => {
     }
   });
 
-  it("goes on over whole turns, and works where the circle is seen from its edge", () => {
+  it("continues over full turns, and works if the circle is seen edge-on", () => {
     const eye = new Vector3(0, 0, 5);
     let angle = 0;
     for (let i = 1; i <= 60; i++) {
@@ -256,7 +256,7 @@ describe("dragging a link", () => {
     expect(near).toBeLessThan(0.7);
   });
 
-  it("slides it along its axis, and stays where the pointer says nothing about it", () => {
+  it("moves it along its axis, and not at all where the pointer does not determine a position", () => {
     const x = new Vector3(1, 0, 0);
     const ray = towards(new Vector3(0.4, -3, 2), new Vector3(0.4, 0, 0));
     expect(slideTowards(ray, x, new Vector3(0.1, 0, 0))).toBeCloseTo(0.3, 6);

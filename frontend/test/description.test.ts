@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { tidyTree, type TreeNode } from "../src/state/tidy-tree";
+import { layOutTree, type TreeNode } from "../src/state/tidy-tree";
 import { lineStates, tokenize, type LineState } from "../src/state/xml-tokens";
 
 function kinds(line: string, state: LineState = "text"): string[] {
@@ -7,7 +7,7 @@ function kinds(line: string, state: LineState = "text"): string[] {
 }
 
 describe("colours of XML", () => {
-  it("tell tags, attributes, values and expressions", () => {
+  it("distinguish tags, attributes, values and expressions", () => {
     expect(kinds('<link name="${side}_wheel"/>')).toEqual([
       "punctuation:<",
       "tag:link",
@@ -29,13 +29,13 @@ describe("colours of XML", () => {
     ]);
   });
 
-  it("go on over line ends", () => {
+  it("continue over line ends", () => {
     const lines = ["<a b='1", "2' c", ' = "x>y"', ">t<!-- a <b> -->", "<!-- c", "d --><e/>", "<![CDATA[ <f> ", "]]><?g", "h?>"];
     expect(lineStates(lines)).toEqual(["text", "'", "tag", "tag", "text", "comment", "text", "cdata", "instruction"]);
     expect(kinds("d --><e/>", "comment")).toEqual(["comment:d -->", "punctuation:<", "tag:e", "punctuation:/>"]);
   });
 
-  it("lose no character, whatever the text", () => {
+  it("lose no character of any text", () => {
     const texts = ['<a b="<>" c=\'"\'>', "<<>>", "a < b > c = 'd", '"<a', "</>", "<a b=c/d>", "<!DOCTYPE x>", "${a ${b"];
     for (const text of texts) {
       for (const state of ["text", "tag", "comment", "cdata", "instruction", '"', "'"] as const) {
@@ -44,7 +44,7 @@ describe("colours of XML", () => {
     }
   });
 
-  it("lines that are skipped begin as if they were read", () => {
+  it("are the same for lines whose predecessors are skipped", () => {
     const text = '<a b="x > y"\nc="1">\n<!-- <x> --> <d e="\n"/>\n<f g=\'a>b\n\'/>';
     const lines = text.split("\n");
     let state: LineState = "text";
@@ -56,7 +56,7 @@ describe("colours of XML", () => {
     expect(lineStates(lines)).toEqual(slow);
   });
 
-  it("of a megabyte take no noticeable time", () => {
+  it("are computed quickly for a megabyte", () => {
     const lines = Array.from({ length: 25_000 }, (_, i) => `    <link name="link_${i}" a="\${x}">text</link>`);
     const start = performance.now();
     lineStates(lines);
@@ -67,8 +67,8 @@ describe("colours of XML", () => {
 describe("the diagram's layout", () => {
   const leaf = (id: string, width = 10): TreeNode => ({ id, width, height: 4, children: [] });
 
-  it("puts parents over the middle of their children, level by level", () => {
-    const { nodes, width, height } = tidyTree({ ...leaf("a"), children: [leaf("b"), leaf("c")] }, 2, 6);
+  it("centres parents over their children, level by level", () => {
+    const { nodes, width, height } = layOutTree({ ...leaf("a"), children: [leaf("b"), leaf("c")] }, 2, 6);
     expect(nodes.map(({ node, x, y, parent }) => [node.id, x, y, parent?.node.id])).toEqual([
       ["a", 11, 2, undefined],
       ["b", 5, 12, "a"],
@@ -77,22 +77,22 @@ describe("the diagram's layout", () => {
     expect([width, height]).toEqual([22, 14]);
   });
 
-  it("never lets nodes overlap, and lets subtrees reach under each other", () => {
+  it("never lets nodes overlap, and packs subtrees below each other", () => {
     const deep = { ...leaf("b"), children: [{ ...leaf("c"), children: [leaf("d", 60), leaf("e", 60)] }] };
-    const { nodes, width } = tidyTree({ ...leaf("a"), children: [deep, leaf("f"), leaf("g")] }, 2, 6);
+    const { nodes, width } = layOutTree({ ...leaf("a"), children: [deep, leaf("f"), leaf("g")] }, 2, 6);
     for (const one of nodes) {
       for (const other of nodes) {
         if (one === other || one.y !== other.y) continue;
         expect(Math.abs(one.x - other.x)).toBeGreaterThanOrEqual((one.node.width + other.node.width) / 2 + 2);
       }
     }
-    // f and g stand above the wide leaves of c.
+    // f and g are above the wide leaves of c.
     expect(width).toBe(122);
   });
 
-  it("takes a chain of thousands", () => {
+  it("handles chains of thousands of nodes", () => {
     let chain = leaf("end");
     for (let i = 0; i < 5000; i++) chain = { ...leaf(`${i}`), children: [chain] };
-    expect(tidyTree(chain, 2, 6).nodes).toHaveLength(5001);
+    expect(layOutTree(chain, 2, 6).nodes).toHaveLength(5001);
   });
 });

@@ -5,8 +5,8 @@ function told(...lines: string[]): string[] {
   return diffLines(lines).map(({ sign, before, changed, after }) => `${sign}${before}[${changed}]${after}`);
 }
 
-describe("The lines of a diff", () => {
-  it("tell whole numbers that differ", () => {
+describe("the lines of a diff", () => {
+  it("mark whole numbers that differ", () => {
     expect(told("@@ -3 +3 @@", " <a/>", '-<origin xyz="0.1 0 0.05"/>', '+<origin xyz="0.1 0 0.052"/>', " <b/>")).toEqual([
       "@@ -3 +3 @@[]",
       " <a/>[]",
@@ -16,12 +16,12 @@ describe("The lines of a diff", () => {
     ]);
   });
 
-  it("tell what came, where nothing went", () => {
+  it("mark additions where nothing was removed", () => {
     expect(told("-<link><a/></link>", "+<link><o/><a/></link>")).toEqual(["-<link><[a]/></link>", "+<link><[o/><a]/></link>"]);
     expect(told('-<o x="1"/>', '+<o x="1" y="-2"/>')).toEqual(['-<o x="1"[]/>', '+<o x="1"[ y="-2"]/>']);
   });
 
-  it("are paired where as many lines take the place of others", () => {
+  it("are paired if equally many lines replace others", () => {
     expect(told("-a 1", "-b 2", "+a 3", "+b 4")).toEqual(["-a [1]", "-b [2]", "+a [3]", "+b [4]"]);
     expect(told("-a 1", "+a 1", "+b 2")).toEqual(["-a 1[]", "+a 1[]", "+b 2[]"]);
     expect(told("+a", "-b", "+c")).toEqual(["+a[]", "-[b]", "+[c]"]);

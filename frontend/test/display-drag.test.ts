@@ -28,26 +28,26 @@ function drop(dragged: string, target: string, part: DropPart): unknown {
   return dropPlace(state.displays, from, to, part);
 }
 
-describe("a display that is dropped", () => {
-  it("goes in front of another, among its siblings", () => {
+describe("a dropped display", () => {
+  it("is inserted before another one, among its siblings", () => {
     expect(drop("tf", "grid", "before")).toEqual({ group: null, before: "grid" });
     expect(drop("tf", "laser", "before")).toEqual({ group: "sensors", before: "laser" });
   });
 
-  it("goes behind another, which is in front of the next sibling", () => {
+  it("is inserted after another one, which is before the next sibling", () => {
     expect(drop("tf", "grid", "after")).toEqual({ group: null, before: "sensors" });
     expect(drop("tf", "laser", "after")).toEqual({ group: "sensors", before: "deep" });
     expect(drop("grid", "tf", "after")).toEqual({ group: null, before: null });
     expect(drop("sensors", "grid", "after")).toEqual({ group: null, before: "tf" });
   });
 
-  it("goes into a group, before what is there", () => {
+  it("is inserted at the start of a group", () => {
     expect(drop("grid", "sensors", "inside")).toEqual({ group: "sensors", before: "laser" });
     expect(drop("laser", "sensors", "inside")).toEqual({ group: "sensors", before: "deep" });
     expect(drop("tf", "grid", "inside")).toBeNull();
   });
 
-  it("never goes into itself", () => {
+  it("is never inserted into itself", () => {
     for (const part of ["before", "inside", "after"] as const) {
       expect(drop("sensors", "sensors", part)).toBeNull();
       expect(drop("sensors", "laser", part)).toBeNull();
@@ -55,7 +55,7 @@ describe("a display that is dropped", () => {
     }
   });
 
-  it("goes where the pointer is on the row", () => {
+  it("is inserted according to the pointer's position on the row", () => {
     expect(dropPart(2, 20, false)).toBe("before");
     expect(dropPart(12, 20, false)).toBe("after");
     expect(dropPart(10, 20, true)).toBe("inside");
@@ -65,7 +65,7 @@ describe("a display that is dropped", () => {
 });
 
 describe("groups", () => {
-  it("switch off what they hold", () => {
+  it("disable the displays in them", () => {
     const state = displays();
     const told: string[] = [];
     state.enabledChanged.on((each) => told.push(each.id));
@@ -80,9 +80,9 @@ describe("groups", () => {
     expect(told).toEqual(["deep", "sensors", "laser"]);
   });
 
-  it("hold displays in their order", () => {
+  it("contain displays in their order", () => {
     const state = displays();
-    expect(state.within(null).map((each) => each.id)).toEqual(["grid", "sensors", "tf"]);
-    expect(state.within(state.find("sensors") ?? null).map((each) => each.id)).toEqual(["laser", "deep"]);
+    expect(state.childrenOf(null).map((each) => each.id)).toEqual(["grid", "sensors", "tf"]);
+    expect(state.childrenOf(state.find("sensors") ?? null).map((each) => each.id)).toEqual(["laser", "deep"]);
   });
 });

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { fadeForAge } from "../src/scene/displays/fade";
-import { gridLines, type GridShape, inPieces } from "../src/scene/displays/grid-lines";
+import { gridLines, type GridShape, splitLines } from "../src/scene/displays/grid-lines";
 
 const GRID: GridShape = { cells: 10, normalCells: 0, cellSize: 1, plane: "XY" };
 
@@ -22,30 +22,30 @@ describe("Grid", () => {
     ]);
   });
 
-  it("lies in the plane asked for", () => {
+  it("lies in the selected plane", () => {
     expect(bounds(gridLines({ ...GRID, plane: "XZ" }))[1]).toEqual([0, 0]);
     expect(bounds(gridLines({ ...GRID, plane: "YZ" }))[0]).toEqual([0, 0]);
   });
 
-  it("joins its layers along the normal", () => {
+  it("connects its layers along the normal", () => {
     const lines = gridLines({ ...GRID, cells: 2, normalCells: 3, cellSize: 0.5 });
     expect(lines.length / 6).toBe(4 * 6 + 9);
     expect(bounds(lines)[2]).toEqual([-0.75, 0.75]);
   });
 
-  it("is drawn in pieces that make up its lines end to end", () => {
-    expect([...inPieces(new Float32Array([0, 0, 0, 2, 4, 0, 1, 1, 1, 1, 1, 5]), 2)]).toEqual(
+  it("is drawn in pieces that join end to end", () => {
+    expect([...splitLines(new Float32Array([0, 0, 0, 2, 4, 0, 1, 1, 1, 1, 1, 5]), 2)]).toEqual(
       [[0, 0, 0, 1, 2, 0], [1, 2, 0, 2, 4, 0], [1, 1, 1, 1, 1, 3], [1, 1, 3, 1, 1, 5]].flat(),
     );
     const whole = gridLines(GRID);
-    expect([...inPieces(whole, 1)]).toEqual([...whole]);
-    expect(inPieces(whole, 10).length).toBe(10 * whole.length);
-    expect(bounds(inPieces(whole, 10))).toEqual(bounds(whole));
+    expect([...splitLines(whole, 1)]).toEqual([...whole]);
+    expect(splitLines(whole, 10).length).toBe(10 * whole.length);
+    expect(bounds(splitLines(whole, 10))).toEqual(bounds(whole));
   });
 });
 
 describe("the age of a frame", () => {
-  it("shows in thirds of the timeout: as ever, turning grey, fading away", () => {
+  it("is drawn in thirds of the timeout: unchanged, turning grey, fading out", () => {
     expect(fadeForAge(0, 15)).toEqual({ grey: 0, alpha: 1 });
     expect(fadeForAge(5, 15)).toEqual({ grey: 0, alpha: 1 });
     expect(fadeForAge(7.5, 15)).toEqual({ grey: 0.5, alpha: 1 });

@@ -1,13 +1,13 @@
 import { Quaternion, Ray, Vector3 } from "three";
 import { describe, expect, test } from "vitest";
-import { alongAxis, Drag, turnBetween, type DragEvent } from "../src/scene/interactive/dragging";
+import { alongAxis, Drag, rotationBetween, type DragEvent } from "../src/scene/interactive/dragging";
 
 const START = { position: new Vector3(1, 2, 3), orientation: new Quaternion() };
 const NO_TURN = new Quaternion();
-/** The control's axis, x, turned to z. */
+/** The control's axis, x, rotated to z. */
 const TO_Z = new Quaternion().setFromAxisAngle(new Vector3(0, 1, 0), -Math.PI / 2);
 
-/** The mouse points from high above straight down at a place of the ground. */
+/** Returns a ray from high above straight down to a point of the ground. */
 function from(x: number, y: number, part: Partial<DragEvent> = {}): DragEvent {
   return {
     ray: new Ray(new Vector3(x, y, 10), new Vector3(0, 0, -1)),
@@ -23,57 +23,57 @@ function from(x: number, y: number, part: Partial<DragEvent> = {}): DragEvent {
 }
 
 function expectPosition(drag: Drag, event: DragEvent, ...expected: [number, number, number]): void {
-  const moved = drag.moved(event);
+  const moved = drag.poseAfter(event);
   expect(moved?.position.toArray().map((each) => Number(each.toFixed(6)) + 0)).toEqual(expected);
 }
 
 describe("moving", () => {
-  test("along an axis goes as far as the mouse, whatever it does beside it", () => {
+  test("along an axis follows the component of the mouse motion along it", () => {
     const drag = new Drag("move_axis", START, new Vector3(1.5, 2, 3), NO_TURN);
     expectPosition(drag, from(4.5, 7), 4, 2, 3);
     expectPosition(drag, from(1.5, -7), 1, 2, 3);
   });
 
-  test("along an axis that the eye looks along says nothing", () => {
-    expect(new Drag("move_axis", START, START.position, TO_Z).moved(from(5, 5))).toBeNull();
+  test("along an axis in the line of sight has no result", () => {
+    expect(new Drag("move_axis", START, START.position, TO_Z).poseAfter(from(5, 5))).toBeNull();
   });
 
-  test("in a plane keeps what was grabbed under the mouse", () => {
+  test("in a plane keeps the grabbed point under the mouse", () => {
     const drag = new Drag("move_plane", START, new Vector3(2, 2, 3), TO_Z);
     expectPosition(drag, from(5, 1), 4, 1, 3);
   });
 
-  test("in a plane seen from its edge says nothing", () => {
-    expect(new Drag("move_plane", START, START.position, NO_TURN).moved(from(5, 5))).toBeNull();
+  test("in a plane seen edge-on has no result", () => {
+    expect(new Drag("move_plane", START, START.position, NO_TURN).poseAfter(from(5, 5))).toBeNull();
   });
 
-  test("freely goes in the plane that faces the viewer, with Shift along the line of sight", () => {
+  test("without constraint moves in the plane that faces the viewer, or with Shift along the line of sight", () => {
     const drag = new Drag("move_3d", START, START.position, NO_TURN);
     expectPosition(drag, from(3, 3), 3, 3, 3);
-    const nearer = drag.moved(from(3, 3, { shift: true, dy: 10 }));
+    const nearer = drag.poseAfter(from(3, 3, { shift: true, dy: 10 }));
     expect(nearer?.position.x).toBeCloseTo(3);
     expect(nearer?.position.z).toBeGreaterThan(3);
   });
 });
 
-describe("turning", () => {
+describe("rotating", () => {
   test("about an axis follows the mouse around it", () => {
     const drag = new Drag("rotate_axis", START, new Vector3(2, 2, 3), TO_Z);
-    const moved = drag.moved(from(1, 5));
+    const moved = drag.poseAfter(from(1, 5));
     expect(moved?.position).toEqual(START.position);
     const turned = new Vector3(1, 0, 0).applyQuaternion(moved?.orientation ?? NO_TURN);
     expect(turned.toArray().map((each) => Math.round(each * 1e6) / 1e6 + 0)).toEqual([0, 1, 0]);
   });
 
-  test("and moving follows as a cart does: what was grabbed stays under the mouse", () => {
+  test("combined with moving follows like a cart, with the grabbed point under the mouse", () => {
     const drag = new Drag("move_rotate", START, new Vector3(2, 2, 3), TO_Z);
     expectPosition(drag, from(4, 2), 3, 2, 3);
     expectPosition(drag, from(3, 4), 3, 3, 3);
   });
 
-  test("freely turns a whole turn for 300 pixels", () => {
+  test("without constraint makes a full turn per 300 pixels", () => {
     const drag = new Drag("rotate_3d", START, START.position, NO_TURN);
-    const moved = drag.moved(from(0, 0, { dx: 75 }));
+    const moved = drag.poseAfter(from(0, 0, { dx: 75 }));
     const turned = new Vector3(0, 0, 1).applyQuaternion(moved?.orientation ?? NO_TURN);
     expect(turned.x).toBeCloseTo(1);
   });
@@ -81,7 +81,7 @@ describe("turning", () => {
 
 test("buttons and menus do not move", () => {
   for (const mode of ["none", "button", "menu"] as const) {
-    expect(new Drag(mode, START, START.position, NO_TURN).moved(from(5, 5))).toBeNull();
+    expect(new Drag(mode, START, START.position, NO_TURN).poseAfter(from(5, 5))).toBeNull();
   }
 });
 
@@ -90,7 +90,7 @@ test("the nearest point of an axis to a line", () => {
   expect(alongAxis(ray, new Vector3(1, 0, 0), new Vector3(1, 0, 0))).toBeCloseTo(2);
 });
 
-test("the turn between two directions keeps the sign of the axis", () => {
-  const turn = turnBetween(new Vector3(1, 0, 5), new Vector3(0, -1, 2), new Vector3(0, 0, 1));
+test("the rotation between two directions keeps the sign of the axis", () => {
+  const turn = rotationBetween(new Vector3(1, 0, 5), new Vector3(0, -1, 2), new Vector3(0, 0, 1));
   expect(new Vector3(1, 0, 0).applyQuaternion(turn).y).toBeCloseTo(-1);
 });

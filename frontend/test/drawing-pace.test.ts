@@ -2,17 +2,17 @@ import { describe, expect, it } from "vitest";
 import { DrawingPace } from "../src/state/drawing-pace";
 
 function frames(pace: DrawingPace, count: number, late: boolean): void {
-  for (let i = 0; i < count; i++) pace.frame(late);
+  for (let i = 0; i < count; i++) pace.countFrame(late);
 }
 
 describe("the pace of drawing", () => {
-  it("is slow when most frames of two seconds came late, and not before", () => {
+  it("is slow once most frames of two seconds were late, and not before", () => {
     const pace = new DrawingPace();
     let changes = 0;
     pace.changed.on(() => changes++);
     frames(pace, 44, true);
     expect(pace.isSlow).toBe(false);
-    pace.frame(true);
+    pace.countFrame(true);
     expect([pace.isSlow, changes]).toEqual([true, 1]);
     frames(pace, 44, false);
     expect(pace.isSlow).toBe(true);
@@ -20,7 +20,7 @@ describe("the pace of drawing", () => {
     expect([pace.isSlow, changes]).toEqual([false, 2]);
   });
 
-  it("is not slow where a few frames are late, as when a mesh is read", () => {
+  it("is not slow if a few frames are late, as while a mesh is read", () => {
     const pace = new DrawingPace();
     for (let i = 0; i < 50; i++) {
       frames(pace, 1, true);

@@ -32,7 +32,7 @@ beforeEach(() => {
 });
 
 describe("rotations", () => {
-  it("are those of URDF", () => {
+  it("match those of URDF", () => {
     const [r, p, y] = [0.3, -1.1, 2.2];
     const three = new Quaternion().setFromEuler(new Euler(r, p, y, "ZYX"));
     quaternionOf([r, p, y]).forEach((value, i) => expect(value).toBeCloseTo(three.toArray()[i] ?? NaN, 12));
@@ -50,13 +50,13 @@ describe("rotations", () => {
     expect(Math.abs(again.reduce((sum, value, i) => sum + value * (rotation[i] ?? 0), 0))).toBeCloseTo(1, 9);
   });
 
-  it("turn on where whole turns end", () => {
+  it("continue over full turns", () => {
     expect(nearestRpy(quaternionOf([0, 0, 3.2]), [0, 0, 3.1])[2]).toBeCloseTo(3.2, 9);
   });
 });
 
 describe("editing", () => {
-  it("asks for the parts of a link only while somebody edits", () => {
+  it("requests the parts of a link only while an editor is open", () => {
     editing.follow(LINK);
     expect(sent).toEqual([]);
     const release = editing.hold();
@@ -66,7 +66,7 @@ describe("editing", () => {
     expect(sent).toHaveLength(1);
   });
 
-  it("asks for the files when the hand rests, and only for what differs", () => {
+  it("requests a preview when dragging pauses, and only for changed values", () => {
     editing.follow(LINK);
     editing.hold();
     told(part());
@@ -77,7 +77,7 @@ describe("editing", () => {
     expect(sent.at(-1)).toMatchObject({ type: "preview_edit", part: "joint", name: "shoulder", xyz: [0, 0, 1.2], rpy: null, together: false });
   });
 
-  it("takes no preview of an older question, and writes the one that is shown", () => {
+  it("ignores the preview of an older request, and writes the one that is shown", () => {
     editing.follow(LINK);
     editing.hold();
     told(part());
@@ -94,7 +94,7 @@ describe("editing", () => {
     expect(sent.at(-1)).toEqual({ type: "apply_edit", number });
   });
 
-  it("shows the robot as it was asked for until the new one comes", () => {
+  it("shows the requested robot until the new one arrives", () => {
     editing.follow(LINK);
     editing.hold();
     told(part());
@@ -107,7 +107,7 @@ describe("editing", () => {
     expect(editing.written).toEqual(["/r.urdf"]);
   });
 
-  it("keeps a draft when something else of the robot changes, and drops it when its own numbers do", () => {
+  it("keeps a draft when other parts of the robot change, and drops it when its own values do", () => {
     editing.follow(LINK);
     editing.hold();
     told(part());
@@ -118,7 +118,7 @@ describe("editing", () => {
     expect(editing.draft).toBeNull();
   });
 
-  it("keeps a draft that could not be written", () => {
+  it("keeps a draft whose writing failed", () => {
     editing.follow(LINK);
     editing.hold();
     told(part());
@@ -129,7 +129,7 @@ describe("editing", () => {
     expect(editing.refusal).toBe(refusal);
   });
 
-  it("moves nothing where nothing may be written", () => {
+  it("moves nothing if writing is not allowed", () => {
     editing.follow(LINK);
     editing.hold();
     connection.message.emit({ type: "editable_parts", ...LINK, why_not: "elsewhere", parts: [part()] });

@@ -7,7 +7,7 @@ import { clamp, formatFixed, formatNumber, parseNumber, stepFor } from "../src/t
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
 
 describe("numbers in rows", () => {
-  it("show the digits that are asked for, and an exponent where they would fill the row", () => {
+  it("show the requested digits, and an exponent if they would fill the row", () => {
     const positions = [0.12345, -0.00004, 999999.5, -1e16, Infinity];
     expect(positions.map((each) => formatFixed(each, 3))).toEqual(["0.123", "0.000", "999999.500", "-1.00e+16", "Infinity"]);
   });
@@ -22,29 +22,29 @@ describe("numbers in rows", () => {
     ]);
   });
 
-  it("are read with point or comma; anything else is refused", () => {
+  it("accept a point or a comma; other text is refused", () => {
     expect(["1.5", " -2 ", "0,25", "1e-3"].map(parseNumber)).toEqual([1.5, -2, 0.25, 0.001]);
     expect(["", "abc", "1 2", "Infinity"].map(parseNumber)).toEqual([null, null, null, null]);
   });
 
-  it("keep to their limits", () => {
+  it("are clamped to their limits", () => {
     expect([clamp(5, 0, 1), clamp(-5, 0, 1), clamp(5, null, null)]).toEqual([1, 0, 5]);
   });
 
-  it("step by a tenth of their size", () => {
+  it("change by steps of a tenth of their size", () => {
     expect([stepFor(0, false), stepFor(0.5, false), stepFor(45, false), stepFor(45, true)]).toEqual([0.01, 0.01, 1, 1]);
   });
 });
 
 describe("colours in rows", () => {
-  it("look as RViz writes them and are read in either form", () => {
+  it("are formatted as in RViz and parsed in either form", () => {
     expect(formatColor("#303030")).toBe("48; 48; 48");
     expect(["48; 48; 48", "48 48 48", "48,48,48", "#303030"].map(parseColor)).toEqual(Array(4).fill("#303030"));
     expect(["48; 48", "256; 0; 0", "red", "1.5; 0; 0"].map(parseColor)).toEqual(Array(4).fill(null));
   });
 });
 
-describe("places", () => {
+describe("source positions", () => {
   it("show the end of a long path", () => {
     expect(shortPath("/home/me/ws/src/mbot/urdf/mbot.xacro")).toBe("…/mbot/urdf/mbot.xacro");
     expect(shortPath("mbot.xacro")).toBe("mbot.xacro");
@@ -53,7 +53,7 @@ describe("places", () => {
 });
 
 describe("OBJ files", () => {
-  it("name their materials one file a line, blanks included", () => {
+  it("list their material files one per line, including names with blanks", () => {
     expect(materialFiles("mtllib a.mtl\r\n# mtllib no.mtl\nv 0 0 0\n  mtllib my robot.mtl\n")).toEqual([
       "a.mtl",
       "my robot.mtl",

@@ -31,7 +31,7 @@ const ROBOT: RobotScene = {
   ],
 };
 const TABLE: FrameTable = { type: "frame_table", revision: 3, names: ["hand", "arm", "base", "cup"], parents: [1, 2, -1, 0] };
-/** Everything as it stands at zero; the cup is half a metre above the hand. */
+/** All links at zero; the cup is half a metre above the hand. */
 const AT_ZERO = { revision: 3, stamp: 0, ages: new Float32Array(4), poses: rows([1, 0, 0], [1, 0, 0], [0, 0, 0], [1, 0, 0.5]) };
 
 function rows(...positions: number[][]): Float32Array {
@@ -47,7 +47,7 @@ describe("the robot of an exported page", () => {
   const controls = [control("turn"), control("slide", "turn", 0.5, 0.25)];
   const robot = new MovingRobot(TABLE, AT_ZERO, ROBOT, controls);
 
-  it("turns and slides, and what hangs on it goes along", () => {
+  it("rotates and translates links with everything attached to them", () => {
     const quarter = { turn: Math.PI / 2 };
     const out = 0.5 * (Math.PI / 2) + 0.25;
     const place = [1, out, 0, 0, 0, HALF, HALF].map((each) => Math.round(each * 1e5) / 1e5);
@@ -56,7 +56,7 @@ describe("the robot of an exported page", () => {
     expect(moved(robot, quarter, "base")).toEqual([0, 0, 0, 0, 0, 0, 1]);
   });
 
-  it("takes along another robot whose joints follow its own, and leaves those of it alone that follow none", () => {
+  it("moves another robot whose joints follow its own, and leaves independent joints of it alone", () => {
     const names = [...TABLE.names, "old/base", "old/arm", "old/hand"];
     const table: FrameTable = { ...TABLE, names, parents: [...TABLE.parents, 2, 4, 5] };
     const old: RobotScene = {
@@ -74,21 +74,21 @@ describe("the robot of an exported page", () => {
     expect(at("old/hand")).toEqual([-1, 0, 0, 0, 0, half, half]);
   });
 
-  it("keeps the fixed frame where it is, though it is not the root", () => {
+  it("keeps the fixed frame in place even if it is not the root", () => {
     const fixed = { ...AT_ZERO, poses: rows([0, 0, 0], [0, 0, 0], [-1, 0, 0], [0, 0, 0.5]) };
     const turned = new MovingRobot(TABLE, fixed, ROBOT, [control("turn")]).transforms({ turn: Math.PI });
     expect([...turned.poses.subarray(0, 3)].map(Math.round)).toEqual([0, 0, 0]);
     expect(turned.poses[14]).toBeCloseTo(1);
   });
 
-  it("follows a chain of mimics, and a circle of them not forever", () => {
+  it("resolves chains of mimic joints, and stops at cycles", () => {
     const chain = new MovingRobot(TABLE, AT_ZERO, ROBOT, [control("a"), control("b", "a", 2, 1), control("c", "b", -1, 0.5)]);
     expect(chain.position("c", { a: 3 })).toBeCloseTo(-6.5);
     const circle = new MovingRobot(TABLE, AT_ZERO, ROBOT, [control("a", "b"), control("b", "a")]);
     expect(circle.position("a", {})).toBe(0);
   });
 
-  it("leaves joints without an axis, and fixed ones, where they are", () => {
+  it("does not move fixed joints and joints without an axis", () => {
     expect(jointPose(joint("j", "revolute", "a", "b", { axis: [0, 0, 0], position: [1, 2, 3] }), 1).elements[12]).toBe(1);
     expect(jointPose(joint("j", "fixed", "a", "b"), 1).elements[0]).toBe(1);
   });
@@ -108,7 +108,7 @@ describe("the files of an exported page", () => {
 });
 
 describe("grid and axes of an exported page", () => {
-  /** What is said of properties once a page has measured a robot, where the grid was at a height. */
+  /** Returns the properties sent after a page has measured a robot, with the grid at a height. */
   function told(height: number, ground: number, awaits_size = false, diagonal = 2, spacing: number | null = null): [string, unknown][] {
     const row: Omit<Property, "id" | "value" | "options" | "children"> = { name: "Z", kind: "float", description: "", minimum: null, maximum: null, read_only: false, expanded: false, details: null, topics: null };
     const offset: Property = { ...row, id: "g/Offset", name: "Offset", kind: "group", value: "", options: [], children: [{ ...row, id: "g/Offset/Z", value: height, options: [], children: [] }] };
@@ -124,24 +124,24 @@ describe("grid and axes of an exported page", () => {
     return values;
   }
 
-  it("lies where the robot stands, once that is drawn, unless somebody had moved the grid", () => {
+  it("places the grid below the robot once that is drawn, unless a user has moved the grid", () => {
     expect(told(0, -0.25)).toEqual([["g/Offset/Z", -0.25]]);
     expect(told(0, 0)).toEqual([]);
     expect(told(0.5, -0.25)).toEqual([]);
   });
 
-  it("has axes that suit the way from link to link", () => {
+  it("scales axes to the distances between links", () => {
     expect(told(0, 0, true, 2, 0.1)[1]).toEqual(["t/Marker Scale", 0.25]);
     expect(told(0, 0, true, 2, 0.2)[1]).toEqual(["t/Marker Scale", 0.5]);
   });
 
-  it("has cells of the robot's size, unless somebody chose or measured before", () => {
+  it("scales the cells to the robot, unless a user has chosen or measured a size before", () => {
     expect(told(0, 0, true, 0.05)).toEqual([["g/Cell Size", 0.01], ["t/Marker Scale", 0.025]]);
     expect(told(0, 0, true, 2)).toEqual([["g/Cell Size", 1], ["t/Marker Scale", 1]]);
     expect(told(0, 0, false, 0.05)).toEqual([]);
   });
 });
 
-it("tells the time of a recording", () => {
+it("shows the time of a recording", () => {
   expect([0, 9, 60, 3725].map(timeText)).toEqual(["0:00", "0:09", "1:00", "62:05"]);
 });

@@ -11,7 +11,7 @@ class BareDock implements Arrangement {
   readonly changed = new Signal();
   readonly kept = new Map<string, readonly PanelId[]>();
   file: string | null = null;
-  listed: readonly PanelName[] | null = null;
+  panelsOfFile: readonly PanelName[] | null = null;
   shown: readonly PanelId[] = ["displays", "views", "time", "links"];
 
   open(id: PanelId): void {
@@ -28,7 +28,7 @@ class BareDock implements Arrangement {
     return found !== undefined;
   }
 
-  keepFor(file: string): void {
+  storeFor(file: string): void {
     this.file = file;
     this.kept.set(file, this.shown);
   }
@@ -37,7 +37,7 @@ class BareDock implements Arrangement {
     this.shown = [...panels, "links"];
   }
 
-  /** What the user does. */
+  /** An action of the user. */
   use(open: readonly PanelId[]): void {
     this.shown = open;
     if (this.file !== null) this.kept.set(this.file, open);
@@ -61,7 +61,7 @@ function configuration(part: Partial<Configuration>): Configuration {
   return { type: "configuration", path: null, opened: 1, unsaved: false, undo: null, redo: null, own: false, recent: [], ...part };
 }
 
-/** What a page is told when it opens, or when another configuration is opened. */
+/** The messages that a page receives when it connects, or when another configuration is opened. */
 function tell(opened: number, path: string | null, shown: PanelName[] | null, origin = "<default>"): void {
   receive({ type: "panels", opened, origin, shown }, configuration({ opened, path }));
 }
@@ -76,19 +76,19 @@ beforeEach(() => {
 });
 
 describe("the panels of a file", () => {
-  it("are open when the browser sees the file for the first time", () => {
+  it("are opened when the browser sees the file for the first time", () => {
     tell(1, "/a.rviz", ["displays", "views"]);
     expect(dock.shown).toEqual(["displays", "views", "links"]);
-    expect([dock.file, dock.listed]).toEqual(["/a.rviz", ["displays", "views"]]);
+    expect([dock.file, dock.panelsOfFile]).toEqual(["/a.rviz", ["displays", "views"]]);
     expect(sent).toEqual([]);
   });
 
-  it("stay as they are where the file says nothing", () => {
+  it("stay unchanged if the file does not specify any", () => {
     tell(1, "/a.rviz", null);
     expect(dock.shown).toEqual(["displays", "views", "time", "links"]);
   });
 
-  it("are the user's when the browser knows the file", () => {
+  it("are the user's if the browser knows the file", () => {
     dock.kept.set("/a.rviz", ["time", "plot"]);
     tell(1, "/a.rviz", ["displays", "views"]);
     expect(dock.shown).toEqual(["time", "plot"]);
@@ -105,7 +105,7 @@ describe("the panels of a file", () => {
     expect(dock.shown).toEqual(["views", "links"]);
   });
 
-  it("are known of when both messages about a configuration came, whichever is first", () => {
+  it("are known once both messages about a configuration have arrived, in either order", () => {
     tell(1, "/a.rviz", ["displays"]);
     receive(configuration({ opened: 2, path: "/b.rviz" }));
     expect(dock.file).toBe("/a.rviz");
@@ -114,8 +114,8 @@ describe("the panels of a file", () => {
   });
 });
 
-describe("what the user does", () => {
-  it("is told once, and only of panels that files know", () => {
+describe("changes by the user", () => {
+  it("are sent once, and only for panels that files can name", () => {
     tell(1, "/a.rviz", ["displays", "views"]);
     dock.use(["displays", "views", "links", "plot"]);
     expect(sent).toEqual([]);
@@ -124,12 +124,12 @@ describe("what the user does", () => {
     expect(sent).toEqual([{ type: "show_panels", shown: ["displays"] }]);
   });
 
-  it("is nothing to the file before it is known", () => {
+  it("are not sent before the file is known", () => {
     dock.use(["displays"]);
     expect(sent).toEqual([]);
   });
 
-  it("goes on under the name that the file is saved under", () => {
+  it("continue under the name that the file is saved under", () => {
     tell(1, null, ["displays"]);
     expect(dock.file).toBe("<default>");
     dock.use(["displays", "time"]);
@@ -138,7 +138,7 @@ describe("what the user does", () => {
     expect(dock.kept.get("/new.rviz")).toEqual(["displays", "time"]);
   });
 
-  it("stays when the connection is made anew", () => {
+  it("survive a reconnection", () => {
     tell(1, "/a.rviz", ["displays", "views"]);
     dock.use(["time"]);
     hello();
@@ -151,35 +151,35 @@ describe("what the user does", () => {
   });
 });
 
-describe("the arrangements that the browser keeps", () => {
+describe("the arrangements stored in the browser", () => {
   const texts = new Map<string, string>();
   const layouts = new Layouts({ getItem: (key) => texts.get(key) ?? null, setItem: (key, text) => void texts.set(key, text) });
   const layout = (file: string, form: Layout["form"] = "wide"): Layout => ({ file, form, arrangement: { panels: {} } as Layout["arrangement"] });
 
   beforeEach(() => texts.clear());
 
-  it("are of the last files, the newest first", () => {
+  it("are those of the last files, newest first", () => {
     expect([layouts.latest("wide"), layouts.find("/0.rviz", "wide")]).toEqual([null, null]);
-    for (let i = 0; i < 20; i++) layouts.keep(layout(`/${i}.rviz`));
+    for (let i = 0; i < 20; i++) layouts.store(layout(`/${i}.rviz`));
     expect(layouts.latest("wide")?.file).toBe("/19.rviz");
     expect(layouts.find("/8.rviz", "wide")?.file).toBe("/8.rviz");
     expect(layouts.find("/7.rviz", "wide")).toBeNull();
-    layouts.keep(layout("/8.rviz"));
+    layouts.store(layout("/8.rviz"));
     expect(layouts.latest("wide")?.file).toBe("/8.rviz");
   });
 
-  it("are others in windows of another form", () => {
-    layouts.keep(layout("/a.rviz", "narrow"));
-    layouts.keep(layout("/b.rviz"));
+  it("differ by the form of the window", () => {
+    layouts.store(layout("/a.rviz", "narrow"));
+    layouts.store(layout("/b.rviz"));
     expect(layouts.latest("narrow")?.file).toBe("/a.rviz");
     expect(layouts.find("/a.rviz", "wide")).toBeNull();
-    layouts.keep(layout("/a.rviz"));
+    layouts.store(layout("/a.rviz"));
     expect(layouts.find("/a.rviz", "narrow")?.form).toBe("narrow");
     expect(layouts.find("/a.rviz", "wide")?.form).toBe("wide");
     expect(layouts.find("/a.rviz", "low")).toBeNull();
   });
 
-  it("are none where something else is kept", () => {
+  it("are empty if the stored value is invalid", () => {
     for (const text of ["{", "7", '{"file": 1}', '[{"file": "/a.rviz", "arrangement": {}}]', "[null, 3, {}]"]) {
       texts.set("linkwright.layouts.3", text);
       expect(layouts.latest("wide")).toBeNull();
@@ -190,7 +190,7 @@ describe("the arrangements that the browser keeps", () => {
 describe("the voice panel", () => {
   const node = (present: boolean): ServerMessage => ({ type: "voice_node", present });
 
-  it("is open where a robot listens, also in a file that says which panels are open, whichever comes first", () => {
+  it("opens for a robot that listens, even if a file names its open panels, in either order", () => {
     receive(node(false));
     tell(1, "/a.rviz", ["displays"]);
     expect(dock.isOpen("voice")).toBe(false);
@@ -198,7 +198,7 @@ describe("the voice panel", () => {
     expect(dock.isOpen("voice")).toBe(true);
   });
 
-  it("stays closed once it was closed", () => {
+  it("stays closed after the user has closed it", () => {
     receive(node(true));
     tell(1, "/a.rviz", ["displays"]);
     expect(dock.isOpen("voice")).toBe(true);
@@ -211,12 +211,12 @@ describe("the voice panel", () => {
   });
 });
 
-describe("the pad", () => {
+describe("the teleop pad", () => {
   const simulation = (drivable: boolean): ServerMessage => ({
     type: "simulation_status", present: true, drivable, paused: false, time: null, real_time_factor: null,
   });
 
-  it("is open where there is a simulated robot that drives, whichever comes first", () => {
+  it("opens for a simulated robot that drives, in either order", () => {
     tell(1, null, ["displays"], "robot.urdf");
     receive(simulation(false));
     expect(dock.isOpen("teleop")).toBe(false);
@@ -226,7 +226,7 @@ describe("the pad", () => {
     expect(dock.isOpen("teleop")).toBe(true);
   });
 
-  it("stays closed once it was closed", () => {
+  it("stays closed after the user has closed it", () => {
     tell(1, null, ["displays"], "robot.urdf");
     receive(simulation(true));
     dock.use(["displays"]);
@@ -237,7 +237,7 @@ describe("the pad", () => {
     expect(dock.isOpen("teleop")).toBe(false);
   });
 
-  it("stays closed where a file says which panels are open", () => {
+  it("stays closed if a file names its open panels", () => {
     tell(1, "/a.rviz", ["displays"]);
     receive(simulation(true));
     expect(dock.isOpen("teleop")).toBe(false);

@@ -5,7 +5,7 @@ import { MaterialPool, type Look } from "../src/scene/materials";
 
 const LOOK: Look = { color: [1, 1, 1], alpha: 1, map: null, vertexColors: false, doubleSided: true };
 
-test("it is put into the shader where three.js has its tone mapping", () => {
+test("the tone mapping is inserted into the shader at three.js's own", () => {
   const material = filmic(new MeshLambertMaterial());
   const shader = { ...ShaderLib.lambert };
   material.onBeforeCompile(shader as never, null as never);
@@ -13,7 +13,7 @@ test("it is put into the shader where three.js has its tone mapping", () => {
   expect(shader.fragmentShader).toContain("vec3 shoulder");
 });
 
-test("only the studio has it: the camera's light and that of worlds show colours as they are", () => {
+test("only the studio has it: the light of cameras and worlds shows colours unchanged", () => {
   const pool = new MaterialPool();
   const toned = new Map(
     (["Camera", "Studio", "World"] as const).map((lighting) => {

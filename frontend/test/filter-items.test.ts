@@ -13,23 +13,23 @@ function names(items: readonly TreeItem[]): unknown {
   return items.map((each) => (each.children ? [each.name, each.open ?? false, names(each.children())] : each.name));
 }
 
-it("shows everything for nothing", () => {
+it("shows everything for an empty text", () => {
   expect(filterItems(ITEMS, "  ")).toBe(ITEMS);
 });
 
-it("opens the way to what has the text in its name", () => {
+it("unfolds the ancestors of items whose name has the text", () => {
   expect(names(filterItems(ITEMS, "dep"))).toEqual([["Laser", true, [["Topic", true, ["Depth"]]]]]);
 });
 
-it("keeps what is below a match, closed as it was", () => {
+it("keeps items below a match, folded as they were", () => {
   expect(names(filterItems(ITEMS, "OFF"))).toEqual([["Grid", true, [["Offset", false, ["X"]]]]]);
 });
 
-it("shows nothing where there is nothing", () => {
+it("shows nothing if nothing matches", () => {
   expect(filterItems(ITEMS, "camera")).toEqual([]);
 });
 
-it("leaves values live that are read when they are shown", () => {
+it("keeps values live that are read when shown", () => {
   let now = 1;
   const frame: TreeItem = { ...item("Position", item("X")), get value() { return now; } };
   const [shown] = filterItems([frame], "x");

@@ -2,7 +2,7 @@ import { BoxGeometry, ColorManagement, Mesh, Vector3, type Color, type DataTextu
 import { describe, expect, it } from "vitest";
 import { Backdrop } from "../src/scene/backdrop";
 import { ContactShadow } from "../src/scene/contact-shadow";
-import { shadesOf } from "../src/scene/displays/grid-lines";
+import { fadedColors } from "../src/scene/displays/grid-lines";
 import { pointsOn, samplesOf } from "../src/scene/robot/surface-samples";
 
 function boxAt(x: number, z: number): Mesh {
@@ -12,7 +12,7 @@ function boxAt(x: number, z: number): Mesh {
   return mesh;
 }
 
-/** How dark the ground is at a place, 0 to 255. */
+/** Returns the darkness of the ground at a point, 0 to 255. */
 function shadeAt(shadow: ContactShadow, x: number, y: number): number {
   const { position, scale, material } = shadow.ground;
   const { data, width } = (material.map as DataTexture).image as { data: Uint8Array; width: number };
@@ -20,8 +20,8 @@ function shadeAt(shadow: ContactShadow, x: number, y: number): number {
   return data[4 * (row * width + column) + 3] ?? 0;
 }
 
-describe("points of a surface", () => {
-  it("lie on it, on all of its sides, and stand for all of its area", () => {
+describe("sample points of a surface", () => {
+  it("lie on all sides of it and represent its whole area", () => {
     const { points, area } = samplesOf(new BoxGeometry(1, 2, 3));
     const half = [0.5, 1, 1.5];
     const sides = new Set<string>();
@@ -36,15 +36,15 @@ describe("points of a surface", () => {
     expect((area * points.length) / 3).toBeCloseTo(22, 3);
   });
 
-  it("are where the mesh is", () => {
+  it("follow the pose of the mesh", () => {
     for (const [x] of pointsOn(boxAt(7, 0))) expect(Math.abs(x - 7)).toBeLessThanOrEqual(0.5 + 1e-5);
   });
 });
 
-describe("the shade on the ground", () => {
-  it("is dark below what stands there, fades beside it, and ends", () => {
+describe("the shadow on the ground", () => {
+  it("is dark below objects, fades out next to them, and ends", () => {
     const shadow = new ContactShadow();
-    shadow.fall([boxAt(3, 0.5)], 0);
+    shadow.update([boxAt(3, 0.5)], 0);
     expect(shadow.ground.position).toEqual(new Vector3(3, 0, 0));
     const [below, beside, far] = [3, 3.61, 3.8].map((x) => shadeAt(shadow, x, 0)) as [number, number, number];
     expect(below).toBeGreaterThan(100);
@@ -52,31 +52,31 @@ describe("the shade on the ground", () => {
     expect(far).toBe(0);
   });
 
-  it("is fainter below what hovers", () => {
+  it("is fainter below floating objects", () => {
     const [standing, hovering] = [0.5, 1.5].map((z) => {
       const shadow = new ContactShadow();
-      shadow.fall([boxAt(0, z)], 0);
+      shadow.update([boxAt(0, z)], 0);
       return shadeAt(shadow, 0, 0);
     }) as [number, number];
     expect(hovering).toBeLessThan(standing * 0.8);
     expect(hovering).toBeGreaterThan(0);
   });
 
-  it("follows what moves, and goes with it", () => {
+  it("follows moving objects", () => {
     const shadow = new ContactShadow();
     const box = boxAt(0, 0.5);
-    shadow.fall([box], 0);
+    shadow.update([box], 0);
     box.position.x = 5;
     box.updateMatrixWorld();
-    shadow.fall([box], 0);
+    shadow.update([box], 0);
     expect(shadow.ground.position.x).toBe(5);
-    shadow.fall([], 0);
+    shadow.update([], 0);
     expect(shadow.ground.visible).toBe(false);
   });
 });
 
-it("lines of a grid fade towards its end", () => {
-  const shades = shadesOf(new Float32Array([0, 0, 0, 1, 0, 0, 2, 0, 0, 4, 0, 0]));
+it("lines of a grid fade out towards its edge", () => {
+  const shades = fadedColors(new Float32Array([0, 0, 0, 1, 0, 0, 2, 0, 0, 4, 0, 0]));
   expect([shades[3], shades[7], shades[11], shades[15]]).toEqual([1, 1 - 1 / 16, 0.75, 0]);
 });
 

@@ -4,7 +4,7 @@ import { FINEST, FrameLoop } from "../src/scene/frame-loop";
 let now = 0;
 let waiting: (() => void)[] = [];
 
-/** Lets a screen of 60 Hz run for a while; each animation frame comes `lag` late. */
+/** Simulates a screen of 60 Hz for a while; each animation frame is `lag` late. */
 function run(ms: number, each: () => void = () => undefined, lag = 0): void {
   const end = now + ms;
   while (now < end) {
@@ -43,7 +43,7 @@ describe("the frame loop", () => {
     expect(loop.framesPerSecond(now)).toBeNull();
   });
 
-  it("draws nothing while it is held, and then what was due", () => {
+  it("draws nothing while suspended, and the pending frame afterwards", () => {
     const draw = vi.fn();
     const loop = new FrameLoop(draw, true);
     loop.invalidate();
@@ -58,15 +58,15 @@ describe("the frame loop", () => {
     expect(draw).toHaveBeenCalledTimes(2);
   });
 
-  it("shows what is beside the scene while it is held", () => {
+  it("shows elements outside the scene even while suspended", () => {
     const loop = new FrameLoop(() => undefined, true);
     const show = vi.fn();
-    loop.beside(show);
+    loop.schedule(show);
     run(100);
     expect(show).toHaveBeenCalledTimes(1);
   });
 
-  it("does not draw the first frames more coarsely for the time that programs take to be compiled", () => {
+  it("does not draw the first frames more coarsely because of the time that shaders take to compile", () => {
     const details: number[] = [];
     const loop = new FrameLoop(({ share }) => {
       details.push(share);
@@ -76,7 +76,7 @@ describe("the frame loop", () => {
     expect(new Set(details)).toEqual(new Set([1]));
   });
 
-  it("keeps to the rate", () => {
+  it("keeps to the frame rate", () => {
     const loop = new FrameLoop(() => undefined);
     loop.rate = 30;
     run(2000, () => loop.invalidate());
@@ -84,7 +84,7 @@ describe("the frame loop", () => {
     expect(loop.framesDrawn).toBeLessThan(62);
   });
 
-  it("draws as many frames as it is asked for when some come late", () => {
+  it("draws as many frames as requested even if some are late", () => {
     const loop = new FrameLoop(() => undefined);
     loop.rate = 30;
     run(1000, () => loop.invalidate());
@@ -98,7 +98,7 @@ describe("the frame loop", () => {
     expect(loop.framesDrawn - before).toBeLessThan(possible + 2);
   });
 
-  it("draws the first frame coarsely, for speed, and a fine one soon after", () => {
+  it("draws the first frame coarsely, for speed, and a fine one soon afterwards", () => {
     const fine: boolean[] = [];
     const loop = new FrameLoop(({ smooth }) => fine.push(smooth));
     loop.invalidate();
@@ -111,7 +111,7 @@ describe("the frame loop", () => {
     expect(loop.settled).toBe(false);
   });
 
-  it("draws coarsely while a slow machine moves, finely when it stands still", () => {
+  it("draws coarsely during motion on a slow machine, and finely at rest", () => {
     const fine: boolean[] = [];
     const loop = new FrameLoop(({ smooth }) => fine.push(smooth));
     run(3000, () => loop.invalidate(), 100);
@@ -120,7 +120,7 @@ describe("the frame loop", () => {
     expect(fine.at(-1)).toBe(true);
   });
 
-  it("draws what moves coarsely from the start on a machine that is known to be slow", () => {
+  it("draws motion coarsely from the start on a machine known to be slow", () => {
     const moving: boolean[] = [];
     const loop = new FrameLoop((detail) => moving.push(detail.moving));
     loop.expectSlow();
@@ -132,7 +132,7 @@ describe("the frame loop", () => {
     expect(moving.at(-1)).toBe(false);
   });
 
-  it("draws fewer pixels of what moves, and all of them again once the machine keeps up for long", () => {
+  it("lowers the resolution during motion, and restores it once the machine has kept up for a while", () => {
     const shares: number[] = [];
     const loop = new FrameLoop(({ share }) => shares.push(share));
     run(5000, () => loop.invalidate(), 30);
@@ -143,25 +143,25 @@ describe("the frame loop", () => {
     expect(shares.at(-1)).toBe(1);
   });
 
-  it("shows what is beside the scene with its frames, and draws none for it alone", () => {
+  it("shows elements outside the scene together with frames, and draws none for them alone", () => {
     const draw = vi.fn();
     const show = vi.fn();
     const loop = new FrameLoop(draw);
     loop.invalidate();
     run(1000);
     draw.mockClear();
-    run(1000, () => loop.beside(show));
+    run(1000, () => loop.schedule(show));
     expect(draw).not.toHaveBeenCalled();
     expect(show.mock.calls.length).toBeGreaterThan(27);
     expect(show.mock.calls.length).toBeLessThan(32);
-    loop.beside(show);
+    loop.schedule(show);
     expect(loop.settled).toBe(false);
     run(100);
     expect(loop.settled).toBe(true);
     const times: number[] = [];
     const [shown, drawn] = [show.mock.calls.length, loop.framesDrawn];
     run(1000, () => {
-      loop.beside(() => times.push(now));
+      loop.schedule(() => times.push(now));
       loop.invalidate();
     });
     expect(new Set(times).size).toBe(loop.framesDrawn - drawn);

@@ -1,12 +1,12 @@
 import { expect, it } from "vitest";
 import { largestRoot } from "../src/state/frame-tree";
 
-it("is the root of the tree that has most frames", () => {
+it("the root is that of the tree with most frames", () => {
   expect(largestRoot({ names: ["odom", "a", "base", "left", "right"], parents: [-1, 0, -1, 2, 3] })).toBe("base");
   expect(largestRoot({ names: ["left", "base"], parents: [1, -1] })).toBe("base");
 });
 
-it("is none without frames, and ends where frames are parents of one another", () => {
+it("there is no root without frames, and cycles of parents end", () => {
   expect(largestRoot({ names: [], parents: [] })).toBeNull();
   expect(largestRoot({ names: ["a", "b"], parents: [1, 0] })).not.toBeNull();
 });

@@ -13,7 +13,7 @@ function transforms(revision: number, poses: readonly (readonly number[])[], age
 }
 
 describe("binary frames", () => {
-  it("are read as pack_transforms writes them", () => {
+  it("are unpacked as pack_transforms packs them", () => {
     const { revision, stamp, poses, ages } = transforms(7, [HERE, NOWHERE], [0.5, 2]);
     expect([revision, stamp]).toEqual([7, 12.5]);
     expect([...poses.subarray(0, 7)]).toEqual([...HERE]);
@@ -30,7 +30,7 @@ describe("binary frames", () => {
 });
 
 describe("the frame store", () => {
-  it("knows the poses by name and leaves out frames without one", () => {
+  it("stores poses by name and skips frames without one", () => {
     const store = new FrameStore();
     store.setTable({ type: "frame_table", revision: 1, names: ["base", "lost"], parents: [-1, 0] });
     store.setTransforms(transforms(1, [HERE, NOWHERE]));
@@ -39,7 +39,7 @@ describe("the frame store", () => {
     expect(store.has(store.row("unknown"))).toBe(false);
   });
 
-  it("tells of changed poses only when one changed", () => {
+  it("emits changes only if a pose has changed", () => {
     const store = new FrameStore();
     const [poses, ages] = [vi.fn(), vi.fn()];
     store.setTable({ type: "frame_table", revision: 1, names: ["base", "lost"], parents: [-1, 0] });
@@ -52,7 +52,7 @@ describe("the frame store", () => {
     expect(poses.mock.calls.length).toBe(1);
   });
 
-  it("keeps poses that come before their table and drops those of an old one", () => {
+  it("keeps poses that arrive before their table and drops those of an old table", () => {
     const store = new FrameStore();
     store.setTransforms(transforms(2, [HERE]));
     store.setTable({ type: "frame_table", revision: 2, names: ["base"], parents: [-1] });
@@ -61,7 +61,7 @@ describe("the frame store", () => {
     expect(store.has(0)).toBe(true);
   });
 
-  it("carries poses over to a new table by name", () => {
+  it("transfers poses to a new table by name", () => {
     const store = new FrameStore();
     store.setTable({ type: "frame_table", revision: 1, names: ["base"], parents: [-1] });
     store.setTransforms(transforms(1, [HERE]));

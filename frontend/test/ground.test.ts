@@ -11,7 +11,7 @@ function joint(child: string, parent: string, kind: JointScene["kind"]): JointSc
   return { name: `${child}_joint`, kind, parent, child, position: [0, 0, 0], quaternion: [0, 0, 0, 1], axis: [0, 0, 1], lower: null, upper: null };
 }
 
-/** A base that is fixed to the root, and a part that moves. */
+/** A base that is fixed to the root, and a moving part. */
 const ROBOT = {
   links: [link("root", null), link("base", "base_joint"), link("part", "part_joint")],
   joints: [joint("base", "root", "fixed"), joint("part", "base", "continuous")],
@@ -22,23 +22,23 @@ function ground(base: [number, number] | null, part: [number, number]): number {
   return groundOf(ROBOT, new Map([["root", new Box3()], ["base", base ? box(base) : new Box3()], ["part", box(part)]]));
 }
 
-describe("The ground of a robot", () => {
-  it("is below wheels that reach lower than the frame that they turn about", () => {
+describe("the ground of a robot", () => {
+  it("is below wheels that reach lower than their frame", () => {
     expect(ground([-0.1, 0.3], [-0.2, 0.1])).toBe(-0.2);
     expect(ground(null, [-0.9, 0])).toBe(-0.9);
   });
 
-  it("is the plane of the fixed frame for what stands on it", () => {
+  it("is the plane of the fixed frame for a robot that stands on it", () => {
     expect(ground([0.1, 0.3], [0, 0.1])).toBe(0);
     expect(ground([0.1, 0.3], [-0.002, 0.1])).toBe(0);
   });
 
-  it("is the plane of an arm's base, whatever reaches below it", () => {
+  it("is the plane of an arm's base, even if something reaches below it", () => {
     expect(ground([0, 0.3], [-0.6, 0.1])).toBe(0);
     expect(ground([0.001, 0.3], [-0.6, 0.1])).toBe(0);
   });
 
-  it("is at zero where nothing is seen", () => {
+  it("is at zero if nothing is visible", () => {
     expect(groundOf(ROBOT, new Map())).toBe(0);
   });
 });

@@ -2,7 +2,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import type { ImageFrame } from "../src/protocol";
 import { ImageCanvas } from "../src/scene/images/image-canvas";
 
-/** Unpacking that goes on until the test ends it. */
+/** A decoder that finishes when the test tells it to. */
 let unpacking: ((bitmap: ImageBitmap) => void)[] = [];
 let open = 0;
 let most = 0;
@@ -30,11 +30,11 @@ beforeEach(() => {
 });
 afterEach(() => vi.unstubAllGlobals());
 
-describe("files of images", () => {
-  it("are unpacked one at a time, and of those that come meanwhile only the newest", async () => {
+describe("image files", () => {
+  it("are decoded one at a time; of those that arrive meanwhile only the newest is", async () => {
     const shown: number[] = [];
     const image = new ImageCanvas();
-    for (let i = 0; i < 30; i++) image.take(file(), () => shown.push(i));
+    for (let i = 0; i < 30; i++) image.show(file(), () => shown.push(i));
     expect(unpacking).toHaveLength(1);
     await unpacked();
     expect(unpacking).toHaveLength(1);
@@ -44,10 +44,10 @@ describe("files of images", () => {
     expect([open, most]).toEqual([0, 1]);
   });
 
-  it("are not shown after they were taken away", async () => {
+  it("are not shown after they were removed", async () => {
     const image = new ImageCanvas();
-    image.take(file(), () => undefined);
-    image.take(file(), () => undefined);
+    image.show(file(), () => undefined);
+    image.show(file(), () => undefined);
     image.clear();
     await unpacked();
     expect(unpacking).toHaveLength(0);

@@ -7,7 +7,7 @@ import { InteractTool } from "../src/scene/tools/interact";
 import type { ToolContext, ToolEvent } from "../src/scene/tools/tool";
 import { OrbitController } from "../src/state/views/orbit";
 
-// The page's words ask the browser for its language.
+// The page's texts read the browser's language when they are imported.
 vi.mock("../src/strings", () => ({ strings: { views: { mouse: {} } } }));
 
 let told: ScenePointer["type"][];
@@ -35,7 +35,7 @@ beforeEach(() => {
     focalShapeVisible: false,
     viewport: { size: { width: 100, height: 100 } },
     picker: {
-      at: () => under && { display: "d", drawing, hit: { key: under, distance: 1, point: new Vector3() } },
+      objectAt: () => under && { display: "d", drawing, hit: { key: under, distance: 1, point: new Vector3() } },
       rayAt: () => new Raycaster(),
       selectAt: () => undefined,
     },
@@ -51,7 +51,7 @@ beforeEach(() => {
 });
 
 describe("the Interact tool", () => {
-  it("tells drawings when the pointer comes over their things and goes", () => {
+  it("notifies drawings when the pointer enters and leaves their objects", () => {
     tool.pointer(event({ type: "move" }));
     under = "a";
     tool.pointer(event({ type: "move" }));
@@ -62,7 +62,7 @@ describe("the Interact tool", () => {
     expect(told).toEqual(["enter", "move", "leave", "enter", "move", "leave"]);
   });
 
-  it("holds what takes the press until the button is released, wherever the pointer goes, and hides the rest", () => {
+  it("keeps an object that accepts the press until the button is released, and hides the others", () => {
     under = "a";
     tool.pointer(event({ type: "down", button: "left", left: true }));
     expect(interaction).toEqual({ enabled: true, hideOthers: true });
@@ -74,14 +74,14 @@ describe("the Interact tool", () => {
     expect(dragged).toBe(0);
   });
 
-  it("moves the camera with what was pressed beside things, also over them", () => {
+  it("moves the camera if the press was not on an object, even while the pointer is over one", () => {
     tool.pointer(event({ type: "down", button: "left", left: true }));
     under = "a";
     tool.pointer(event({ type: "move", left: true }));
     expect([told, dragged]).toEqual([[], 1]);
   });
 
-  it("moves the camera where a drawing does not want the press", () => {
+  it("moves the camera if the drawing refuses the press", () => {
     [under, takes] = ["a", false];
     tool.pointer(event({ type: "down", button: "left", left: true }));
     tool.pointer(event({ type: "move", left: true }));
@@ -89,7 +89,7 @@ describe("the Interact tool", () => {
     expect(interaction).toEqual({ enabled: true, hideOthers: false });
   });
 
-  it("tells when it is put away", () => {
+  it("notifies drawings when it is deactivated", () => {
     tool.deactivate();
     expect(interaction).toEqual({ enabled: false, hideOthers: false });
   });

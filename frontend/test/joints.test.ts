@@ -1,9 +1,9 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { halvesOf } from "../src/panels/joints/joint-row";
+import { splitName } from "../src/panels/joints/joint-row";
 import type { JointControl, PageMessage, ServerMessage } from "../src/protocol";
 import { JointsState } from "../src/state/joints";
-import { PoseStore, posesOf, srdfOf, standsAs } from "../src/state/named-poses";
+import { PoseStore, fromSrdf, toSrdf, matchesPose } from "../src/state/named-poses";
 import { roundTrip, Sweep } from "../src/state/sweep";
 import { browserStorage } from "../src/storage";
 
@@ -37,10 +37,10 @@ describe("moving joints", () => {
   describe("of a program that was started again", () => {
     beforeEach(() => {
       emit({ type: "joint_positions", positions: { grip: 0.7, claw: -0.9, tip: 0 } });
-      emit({ type: "joints", controls: null }); // as it ends, and as the next one begins
+      emit({ type: "joints", controls: null }); // sent when a program ends and when the next one starts
     });
 
-    it("puts those that were moved back once there are sliders, once", () => {
+    it("restores the moved joints once after the sliders appear", () => {
       joints.programRestarted(true);
       emit({ type: "joints", controls: null });
       emit({ type: "joints", controls: [] });
@@ -50,7 +50,7 @@ describe("moving joints", () => {
       expect(sent).toEqual([{ type: "set_joint", name: "grip", position: 0.7 }]);
     });
 
-    it("moves none that stood at their zero, are gone, or belong to something else that is shown now", () => {
+    it("does not move joints that were at zero, are gone, or belong to another robot that is shown now", () => {
       joints.programRestarted(true);
       emit({ type: "joints", controls: [control("other")] });
       emit({ type: "joint_positions", positions: { other: 0 } });
@@ -63,7 +63,7 @@ describe("moving joints", () => {
     });
   });
 
-  it("tells the first move at once and the rest of a frame as one", () => {
+  it("sends the first move immediately and the others of a frame as one", () => {
     for (const position of [0.1, 0.2, 0.3]) joints.move({ grip: position });
     joints.move({ lift: 1 });
     expect(sent).toEqual([{ type: "set_joint", name: "grip", position: 0.1 }]);
@@ -76,7 +76,7 @@ describe("moving joints", () => {
     expect(sent).toHaveLength(3);
   });
 
-  it("finds the joint that a following one is moved by, and where it must go", () => {
+  it("finds the joint that moves a mimic joint, and its required position", () => {
     expect(joints.leader("grip", 0.7)?.position).toBe(0.7);
     const found = joints.leader("tip", 1.5);
     expect(found?.control.name).toBe("grip");
@@ -88,26 +88,26 @@ describe("moving joints", () => {
 describe("named poses", () => {
   const home = { name: "home", positions: { a: 0.5, "b<1>": -1e-7 } };
 
-  it("are kept for each robot, one of a name", () => {
+  it("are stored for each robot, with unique names", () => {
     const storage = browserStorage();
     const store = new PoseStore(storage);
     store.save("mbot", home, { name: "up", positions: { a: 1 } });
     store.save("mbot", { name: "home", positions: { a: 2 } });
-    expect(new PoseStore(storage).of("mbot").map((pose) => [pose.name, pose.positions["a"]])).toEqual([
+    expect(new PoseStore(storage).posesOf("mbot").map((pose) => [pose.name, pose.positions["a"]])).toEqual([
       ["home", 2],
       ["up", 1],
     ]);
-    expect(store.of("other")).toEqual([]);
+    expect(store.posesOf("other")).toEqual([]);
     store.remove("mbot", "home");
-    expect(store.of("mbot").map((pose) => pose.name)).toEqual(["up"]);
+    expect(store.posesOf("mbot").map((pose) => pose.name)).toEqual(["up"]);
   });
 
-  it("go into an SRDF file and come back", () => {
+  it("survive export to SRDF and import", () => {
     const poses = [home, { name: 'say "hi" & go', positions: { a: 3 } }];
-    expect(posesOf(srdfOf("r&d", poses))).toEqual(poses);
+    expect(fromSrdf(toSrdf("r&d", poses))).toEqual(poses);
   });
 
-  it("are read from a file of MoveIt", () => {
+  it("are read from a MoveIt file", () => {
     const text = `<robot name="panda">
       <!-- <group_state name="old" group="arm"><joint name="x" value="1"/></group_state> -->
       <group name="arm"><joint name="x"/></group>
@@ -116,21 +116,21 @@ describe("named poses", () => {
       </group_state>
       <group_state group="hand" name="ready"><joint name="z" value="0"></joint></group_state>
     </robot>`;
-    expect(posesOf(text)).toEqual([
+    expect(fromSrdf(text)).toEqual([
       { name: "ready", positions: { x: 1.5, y: -2 } },
       { name: "ready (hand)", positions: { z: 0 } },
     ]);
-    expect(posesOf("no XML at all")).toEqual([]);
+    expect(fromSrdf("no XML at all")).toEqual([]);
   });
 
-  it("know whether the robot stands so", () => {
-    expect(standsAs(home, { a: 0.5, "b<1>": 0, c: 9 })).toBe(true);
-    expect(standsAs(home, { a: 0.51 })).toBe(false);
+  it("are marked if the robot is in that pose", () => {
+    expect(matchesPose(home, { a: 0.5, "b<1>": 0, c: 9 })).toBe(true);
+    expect(matchesPose(home, { a: 0.51 })).toBe(false);
   });
 });
 
 describe("a sweep", () => {
-  it("goes from where a joint stands to both limits and back", () => {
+  it("goes from the joint's position to both limits and back", () => {
     const range = { lower: -1, upper: 2 };
     expect([0, 1 / 3, 0.5, 5 / 6, 1].map((part) => roundTrip(range, 0, part))).toEqual([0, 2, 1, -1, 0]);
     for (let i = 0; i <= 100; i++) {
@@ -140,7 +140,7 @@ describe("a sweep", () => {
     }
   });
 
-  it("moves joints one after another, each back to where it stood, or all at once", () => {
+  it("moves joints one after another, each back to its start, or all at once", () => {
     const controls = [control("a"), control("b", { lower: 0, upper: 1 }), control("c", { mimic: "a" })];
     const start = { a: 0.5, b: 0.25 };
     const one = new Sweep(controls, start, "one");
@@ -153,10 +153,10 @@ describe("a sweep", () => {
 });
 
 describe("the name of a joint", () => {
-  it("is whole where it is short, and keeps its end where it is long", () => {
-    expect(halvesOf("j1")).toEqual(["j1", ""]);
-    expect(halvesOf("left_joint")).toEqual(["left_joint", ""]);
-    expect(halvesOf("front_left_wheel_joint")).toEqual(["front_left_", "wheel_joint"]);
-    expect(halvesOf("front_left_caster_rotation_joint")[1]).toBe("rotation_joint");
+  it("is complete if short, and keeps its end if long", () => {
+    expect(splitName("j1")).toEqual(["j1", ""]);
+    expect(splitName("left_joint")).toEqual(["left_joint", ""]);
+    expect(splitName("front_left_wheel_joint")).toEqual(["front_left_", "wheel_joint"]);
+    expect(splitName("front_left_caster_rotation_joint")[1]).toBe("rotation_joint");
   });
 });

@@ -5,8 +5,8 @@ import { LogState } from "../src/state/monitor/log";
 
 const line = (message: string, time: number): LogLine => ({ level: 20, node: "talker", message, time, file: "", function: "", line: 0 });
 
-describe("the log of a page that connects again", () => {
-  it("has each record once, though the server begins with the past", () => {
+describe("the log of a page that reconnects", () => {
+  it("has each record once, although the server sends the history first", () => {
     const on = new Map<string, (message: unknown) => void>();
     const connection = { on: (type: string, take: (message: unknown) => void) => on.set(type, take), send: () => undefined };
     const log = new LogState(connection as unknown as Connection, { getItem: () => null, setItem: () => undefined });

@@ -20,7 +20,7 @@ function send(to: MarkersDrawing, markers: MarkerShape[], gone: string[] = []): 
 }
 
 describe("a display of markers", () => {
-  it("has nothing to draw before there is a marker", () => {
+  it("draws nothing before the first marker", () => {
     const empty = drawing();
     empty.update();
     expect(empty.root.children).toEqual([]);
@@ -28,7 +28,7 @@ describe("a display of markers", () => {
     empty.dispose();
   });
 
-  it("draws a cube, and takes it away again", () => {
+  it("draws a cube and removes it", () => {
     const one = drawing();
     send(one, [cube("a")]);
     expect(one.root.children.filter(({ visible }) => visible)).toHaveLength(1);

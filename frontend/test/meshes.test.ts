@@ -1,11 +1,11 @@
 import type { BufferGeometry } from "three";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { progressText } from "../src/panels/over-scene/mesh-notice";
-import { mended } from "../src/scene/meshes/collada";
+import { fixXml } from "../src/scene/meshes/collada";
 import { readMesh } from "../src/scene/meshes/formats";
 import type { MeshFiles } from "../src/scene/meshes/mesh-files";
 import { MeshLibrary } from "../src/scene/meshes/mesh-library";
-import { collapseUnreal } from "../src/scene/meshes/mesh-numbers";
+import { collapseNonFinite } from "../src/scene/meshes/non-finite";
 import type { MeshTemplate } from "../src/scene/meshes/mesh-template";
 import { MeshProgress } from "../src/state/mesh-progress";
 
@@ -31,7 +31,7 @@ async function error(format: string, data: string | ArrayBuffer): Promise<string
   );
 }
 
-/** A binary STL with so many triangles, which says that it has `said`; all corners at x, y, z = `value`, 1, 2 and so on. */
+/** Returns a binary STL with this number of triangles that declares `said`; all corners are at x, y, z = `value`, 1, 2 and so on. */
 function binaryStl(triangles: number, said = triangles, header = "", value = 0): ArrayBuffer {
   const data = new ArrayBuffer(84 + 50 * triangles);
   new Uint8Array(data).set(new TextEncoder().encode(header));
@@ -66,19 +66,19 @@ function glb(json: string, said?: number, version = 2): ArrayBuffer {
   return data;
 }
 
-describe("COLLADA that XML forbids", () => {
+describe("COLLADA that is not valid XML", () => {
   it.each([
     ['<node id="<STL_BINARY>" name=\'a<b\'/>', '<node id="&lt;STL_BINARY>"  name=\'a&lt;b\' />'],
     ['<author a="1"b="2">R&D &amp; &#65; &lt;</author>', '<author a="1" b="2" >R&amp;D &amp; &#65; &lt;</author>'],
     ["<a><!-- made -- by hand --><b/></a>", "<a><b/></a>"],
     ["<p>1 0 2</p>", "<p>1 0 2</p>"],
   ])("is read as RViz reads it: %s", (text, expected) => {
-    expect(mended(text)).toBe(expected);
+    expect(fixXml(text)).toBe(expected);
   });
 });
 
 describe("STL", () => {
-  it("is read, binary and text, also binary that begins as text does", async () => {
+  it("is read as binary and as text, also binary that begins like text", async () => {
     const triangle = [0, 1, 2, 3, 4, 5, 6, 7, 8];
     expect(positions(await read("stl", binaryStl(1)))).toEqual(triangle);
     expect(positions(await read("STL".toLowerCase(), binaryStl(1, 1, "solid of something")))).toEqual(triangle);
@@ -86,7 +86,7 @@ describe("STL", () => {
     expect(positions(await read("stl", `\ufeffSOLID\r\n${FACET.toUpperCase()}${FACET}`))).toHaveLength(18);
   });
 
-  it("that was cut off says how much it lacks", async () => {
+  it("that is truncated reports how much is missing", async () => {
     expect(await error("stl", binaryStl(12, 40_000_000))).toBe("the STL file declares 40 000 000 triangles and has 12");
     expect(await error("stl", binaryStl(1, 3, "solid"))).toBe("the STL file declares 3 triangles and has 1");
     expect(await error("stl", new ArrayBuffer(12))).toContain("it is not an STL file");
@@ -95,7 +95,7 @@ describe("STL", () => {
     expect(await error("stl", new ArrayBuffer(0))).toBe("the file is empty");
   });
 
-  it("as text says in which line it is broken", async () => {
+  it("as text reports the line of the error", async () => {
     const at = "the ASCII STL is broken at line ";
     expect(await error("stl", `solid\n${facet("0 0 0", "1 0,5 0", "0 1 0")}`)).toBe(`${at}5: '0,5' instead of a number`);
     expect(await error("stl", `solid\n${facet("0 0 0", "1 0 0")}`)).toBe(`${at}6: a facet with 2 vertices instead of 3`);
@@ -105,22 +105,22 @@ describe("STL", () => {
   });
 });
 
-describe("vertices that are no numbers", () => {
-  it("are counted, and triangles with them are not drawn", async () => {
+describe("non-finite vertices", () => {
+  it("are counted, and their triangles are not drawn", async () => {
     const some = await read("stl", `solid\n${FACET}${facet("nan 0 0", "5 inf 0", "0 1 0")}endsolid`);
     expect(some.problem).toBe("2 vertices have coordinates that are not finite numbers; 1 triangles with them are left out");
     expect(positions(some)).toEqual([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
     expect(await error("stl", binaryStl(2, 2, "", NaN))).toBe("none of its triangles can be drawn: 2 vertices have coordinates that are not finite numbers");
   });
 
-  it("are left out of faces that others share", async () => {
+  it("remove only the faces that contain them", async () => {
     const some = await read("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nf 1 2 3\nf 1 2 4\n");
     expect(some.problem).toBe("1 vertices have coordinates that are not finite numbers; 1 triangles with them are left out");
     const { BufferAttribute, BufferGeometry } = await import("three");
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(new Float32Array([9, 9, 9, 1, 0, 0, NaN, 1, 0, 0, 0, 1]), 3));
     geometry.setIndex([0, 1, 3, 0, 1, 2]);
-    expect(collapseUnreal(geometry)).toEqual({ vertices: 1, triangles: 1, ofTriangles: 2 });
+    expect(collapseNonFinite(geometry)).toEqual({ vertices: 1, triangles: 1, ofTriangles: 2 });
     expect([...(geometry.index?.array ?? [])]).toEqual([0, 1, 3, 0, 0, 0]);
     geometry.computeBoundingBox();
     expect(geometry.boundingBox?.max.toArray()).toEqual([9, 9, 9]);
@@ -128,7 +128,7 @@ describe("vertices that are no numbers", () => {
 });
 
 describe("other mesh files", () => {
-  it("say in words what is wrong with them", async () => {
+  it("report their faults in readable sentences", async () => {
     expect(await error("obj", "v 0 0 0\n# nothing else\n")).toBe("the OBJ file has no faces");
     expect(await error("obj", "<html>not here</html>")).toContain("it is not an OBJ file");
     expect(await error("glb", "PK\x03\x04, a zip")).toContain("it is not a GLB file");
@@ -142,7 +142,7 @@ describe("other mesh files", () => {
     expect(await error("ply", "ply")).toContain("no reader for '.ply'");
   });
 
-  it("never tell what JavaScript says", async () => {
+  it("never show JavaScript's error messages", async () => {
     const warn = vi.spyOn(console, "warn").mockImplementation(() => undefined);
     expect(await error("glb", glb('{"asset": {"version": "2.0"}, "meshes": 3, "nodes": [{"mesh": 7}], "scenes": [{"nodes": [0]}]}'))).toContain(
       "it cannot be read",
@@ -151,7 +151,7 @@ describe("other mesh files", () => {
   });
 });
 
-describe("the library of meshes", () => {
+describe("the mesh library", () => {
   function answering(answer: () => Promise<Response>): Promise<string> {
     const library = new MeshLibrary(new MeshProgress(), { ...NO_FILES, fetch: answer });
     return library.load("/mesh/a/b.stl", ".STL").then(
@@ -160,7 +160,7 @@ describe("the library of meshes", () => {
     );
   }
 
-  it("says why a file cannot be had", async () => {
+  it("reports why a file is not available", async () => {
     expect(await answering(() => Promise.resolve(new Response("no", { status: 404 })))).toBe("the server does not have the file (404)");
     expect(await answering(() => Promise.reject(new TypeError("Failed to fetch")))).toBe("the connection was lost during the download");
     const refused = new Response("a link leads out of the package\nmore", { status: 403, headers: { "Content-Type": "text/plain" } });
@@ -176,39 +176,39 @@ describe("the progress of meshes", () => {
   beforeEach(() => vi.useFakeTimers());
   afterEach(() => vi.useRealTimers());
 
-  it("is told after half a second, with bytes, then that they are read", async () => {
+  it("is reported after half a second, first in bytes, then as being read", async () => {
     vi.stubGlobal("requestAnimationFrame", (call: () => void) => setTimeout(call, 16));
     const progress = new MeshProgress();
     const told = (): string[] => progress.loads.map((load) => `${load.name} ${progressText(load)}`);
     const report = progress.begin("arm.stl");
-    report.came(20_000, null);
+    report.received(20_000, null);
     expect(told()).toEqual([]);
     await vi.advanceTimersByTimeAsync(500);
     expect(told()).toEqual(["arm.stl 20 kB"]);
-    report.came(1_200_000, 4_000_000);
+    report.received(1_200_000, 4_000_000);
     expect(told()).toEqual(["arm.stl 1.2 MB of 4.0 MB"]);
-    void report.reads();
+    void report.startReading();
     expect(told()).toEqual(["arm.stl reading"]);
-    report.ended();
+    report.end();
     expect(told()).toEqual([]);
     vi.unstubAllGlobals();
   });
 
-  it("is told at once of large files that are read, and never of what was soon there", async () => {
+  it("is reported at once for large files that are being read, and never for those that load quickly", async () => {
     vi.stubGlobal("requestAnimationFrame", (call: () => void) => setTimeout(call, 16));
     const progress = new MeshProgress();
     const soon = progress.begin("small.stl");
-    soon.came(100, 100);
-    await soon.reads();
-    soon.ended();
+    soon.received(100, 100);
+    await soon.startReading();
+    soon.end();
     const large = progress.begin("large.stl");
-    large.came(50_000_000, 50_000_000);
+    large.received(50_000_000, 50_000_000);
     let painted = false;
-    void large.reads().then(() => (painted = true));
+    void large.startReading().then(() => (painted = true));
     expect([progress.loads.length, painted]).toEqual([1, false]);
     await vi.advanceTimersByTimeAsync(200);
     expect(painted).toBe(true);
-    large.ended();
+    large.end();
     await vi.advanceTimersByTimeAsync(1000);
     expect(progress.loads).toEqual([]);
     vi.unstubAllGlobals();

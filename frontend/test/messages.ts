@@ -1,6 +1,6 @@
 import type { Display, Property, RobotScene, Tree } from "../src/protocol";
 
-/** Messages as the server sends them, with only what a test cares about filled in. */
+/** Messages of the server, with defaults for the fields that a test does not need. */
 export function property(part: Partial<Property> & Pick<Property, "id" | "name">): Property {
   return {
     kind: "float",
@@ -65,7 +65,7 @@ export function robot(displayId: string, ...links: string[]): RobotScene {
   };
 }
 
-/** A binary frame as `pack_transforms` of page/protocol/message.py packs it. */
+/** Packs a binary frame like `pack_transforms` of page/protocol/message.py. */
 export function packed(revision: number, poses: readonly (readonly number[])[], ages: readonly number[]): ArrayBuffer {
   const buffer = new ArrayBuffer(24 + poses.length * 32);
   const view = new DataView(buffer);

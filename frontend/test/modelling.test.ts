@@ -4,12 +4,12 @@ import { hex, entityItems } from "../src/panels/modelling/entity-items";
 import type { ModellingState, PageMessage, WorldEntity } from "../src/protocol";
 import { AngleUnits } from "../src/state/angle-unit";
 import { Modelling } from "../src/state/modelling/modelling";
-import { placementAt, resized, scaledSize, stretch, wallBetween } from "../src/state/modelling/shapes";
-import { Snapping, snapped } from "../src/state/modelling/snapping";
+import { placementAt, resizeChange, scaledSize, stretchFactors, wallBetween } from "../src/state/modelling/shapes";
+import { Snapping, snap } from "../src/state/modelling/snapping";
 import { browserStorage } from "../src/storage";
 import type { TreeItem } from "../src/tree/tree-item";
 
-// The page's words ask the browser for its language.
+// The page's texts read the browser's language when they are imported.
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
 
 let sent: PageMessage[];
@@ -34,13 +34,13 @@ beforeEach(() => {
 });
 
 describe("snapping", () => {
-  it("keeps to multiples of a step, without dust", () => {
-    expect(snapped(0.34, 0.1)).toBe(0.3);
-    expect(snapped(-0.26, 0.25)).toBe(-0.25);
-    expect(snapped(0.1234, 0)).toBe(0.1234);
+  it("rounds to multiples of a step, without rounding errors", () => {
+    expect(snap(0.34, 0.1)).toBe(0.3);
+    expect(snap(-0.26, 0.25)).toBe(-0.25);
+    expect(snap(0.1234, 0)).toBe(0.1234);
   });
 
-  it("is inverted by Ctrl, and remembered", () => {
+  it("is inverted by Ctrl, and stored", () => {
     const storage = browserStorage();
     const snapping = new Snapping(storage);
     [snapping.metres, snapping.degrees] = [0.5, 90];
@@ -54,37 +54,37 @@ describe("snapping", () => {
 });
 
 describe("shapes", () => {
-  it("stand on the ground", () => {
+  it("are placed on the ground", () => {
     expect(placementAt("box", [1, 2])).toEqual({ pose: [1, 2, 0.25, 0, 0, 0], size: [0.5, 0.5, 0.5] });
     expect(placementAt("sphere", [0, 0]).pose[2]).toBe(0.25);
     expect(placementAt("point_light", [0, 0])).toEqual({ pose: [0, 0, 2, 0, 0, 0], size: [] });
     expect(placementAt("model", [3, 4]).pose).toEqual([3, 4, 0, 0, 0, 0]);
   });
 
-  it("a wall goes from one point to the other", () => {
+  it("include a wall from one point to another", () => {
     const wall = wallBetween([1, 1], [1, 4]);
     expect(wall).toEqual({ pose: [1, 2.5, 0.5, 0, 0, Math.PI / 2], size: [3, 0.1, 1] });
     expect(wallBetween([1, 1], [1, 1])).toBeNull();
   });
 
-  it("scale along their axes, round ones as the axis that is scaled most, never to nothing", () => {
+  it("scale along their axes, round ones by the axis scaled most, never to zero", () => {
     expect(scaledSize("box", [1, 2, 3], [2, 1, 0.5], 0.1)).toEqual([2, 2, 1.5]);
     expect(scaledSize("cylinder", [0.5, 1], [1, 0.5, 1], 0)).toEqual([0.25, 1]);
     expect(scaledSize("sphere", [0.5], [1, 1, 3], 0)).toEqual([1.5]);
     expect(scaledSize("box", [1, 1, 1], [0, 1, 1], 0.25)).toEqual([0.25, 1, 1]);
     expect(scaledSize("box", [0.33, 1, 1], [1, 2, 1], 0.1)).toEqual([0.33, 2, 1]);
-    expect(stretch("cylinder", [0.5, 1], [1, 3])).toEqual([2, 2, 3]);
+    expect(stretchFactors("cylinder", [0.5, 1], [1, 3])).toEqual([2, 2, 3]);
   });
 
-  it("keep their foot where it is when they stand upright", () => {
-    expect(resized(entity({ name: "box" }), [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3], pose: [0, 0, 1.5, 0, 0, 0] });
+  it("keep their lowest point in place while they are upright", () => {
+    expect(resizeChange(entity({ name: "box" }), [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3], pose: [0, 0, 1.5, 0, 0, 0] });
     const tilted = entity({ name: "box", pose: [0, 0, 0.5, 0.1, 0, 0] });
-    expect(resized(tilted, [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3] });
+    expect(resizeChange(tilted, [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3] });
   });
 });
 
-describe("what is selected", () => {
-  it("is taken anew, or added and taken away with Shift", () => {
+describe("the selection", () => {
+  it("is replaced, or extended and reduced with Shift", () => {
     told({}, entity({ name: "a" }), entity({ name: "b" }));
     modelling.select(["a"]);
     modelling.select(["b"], "toggle");
@@ -93,7 +93,7 @@ describe("what is selected", () => {
     expect(modelling.selected).toEqual(["b"]);
   });
 
-  it("is what this page made, and no more what is gone", () => {
+  it("contains entities that this page has created, and no removed ones", () => {
     told({}, entity({ name: "a" }));
     modelling.select(["a"]);
     told({}, entity({ name: "a" }), entity({ name: "of another page" }));
@@ -105,7 +105,7 @@ describe("what is selected", () => {
     expect(modelling.selected).toEqual([]);
   });
 
-  it("follows an entity that gets another name, unless the server refuses it", () => {
+  it("follows an entity that is renamed, unless the server refuses", () => {
     told({}, entity({ name: "a" }));
     modelling.select(["a"]);
     modelling.change([{ name: "a", new_name: "b" }]);
@@ -117,7 +117,7 @@ describe("what is selected", () => {
     expect(modelling.selected).toEqual(["b"]);
   });
 
-  it("is nothing, and nothing is in hand, when modelling ends", () => {
+  it("is cleared, and placing stops, when modelling ends", () => {
     told({}, entity({ name: "a" }));
     modelling.select(["a"]);
     modelling.place({ kind: "box", address: "" });
@@ -126,14 +126,14 @@ describe("what is selected", () => {
   });
 });
 
-it("what is dropped before the scene can take it is there when it can, once", () => {
+it("entities dropped before the scene is ready are placed once it is", () => {
   const drop = { placing: { kind: "box", address: "" }, at: null } as const;
   modelling.drop(drop);
   expect([modelling.takeDrop(), modelling.takeDrop()]).toEqual([drop, null]);
 });
 
-describe("what can be done", () => {
-  it("is undone and redone only where there is something", () => {
+describe("commands", () => {
+  it("undo and redo are enabled only if there is something to undo or redo", () => {
     told({});
     modelling.undo();
     modelling.redo();
@@ -144,7 +144,7 @@ describe("what can be done", () => {
     expect(sent.map(({ type }) => type)).toEqual(["undo_world", "redo_world"]);
   });
 
-  it("depends on what is selected", () => {
+  it("depend on the selection", () => {
     const grouped = entity({ name: "g", shape: null, size: [], parts: ["p", "q"] });
     told({}, entity({ name: "a" }), grouped, entity({ name: "sun", kind: "light", shape: null, size: [] }));
     const can = (...names: string[]): boolean[] => {
@@ -157,7 +157,7 @@ describe("what can be done", () => {
     expect(can("a", "sun")).toEqual([false, false, false]);
   });
 
-  it("tells the server in whole messages", () => {
+  it("send complete messages to the server", () => {
     told({}, entity({ name: "a" }), entity({ name: "b" }));
     modelling.select(["a", "b"]);
     modelling.copy();
@@ -176,7 +176,7 @@ describe("what can be done", () => {
   });
 });
 
-describe("the rows of what is selected", () => {
+describe("the rows of the selection", () => {
   const items = (): Map<string, TreeItem> => {
     const angles = new AngleUnits(browserStorage());
     angles.current = "deg";
@@ -184,7 +184,7 @@ describe("the rows of what is selected", () => {
     return new Map(all.map((item) => [item.key, item]));
   };
 
-  it("show what several have in common, and change it for all in one step", () => {
+  it("show common values of several entities, and change them all in one step", () => {
     told({}, entity({ name: "a", pose: [1, 2, 0.5, 0, 0, 0] }), entity({ name: "b", pose: [1, 5, 0.5, 0, 0, 0] }));
     modelling.select(["a", "b"]);
     expect([items().get("pose/0")?.value, items().get("pose/1")?.value]).toEqual([1, null]);
@@ -197,7 +197,7 @@ describe("the rows of what is selected", () => {
     ]);
   });
 
-  it("are of the kind of entity", () => {
+  it("depend on the kind of entity", () => {
     told({}, entity({ name: "c", shape: "cylinder", size: [0.5, 1], colour: [1, 0.5, 0, 0.5] }), entity({ name: "sun", kind: "light", shape: null, size: [] }));
     modelling.select(["c"]);
     expect([...items().keys()]).toEqual(expect.arrayContaining(["name", "size/1", "static", "colour"]));
@@ -207,7 +207,7 @@ describe("the rows of what is selected", () => {
     expect([...items().keys()].filter((key) => /size|static|colour/.test(key))).toEqual([]);
   });
 
-  it("colours are written as the page writes them", () => {
+  it("format colours as the page does", () => {
     expect(hex([1, 0.5, 0, 1])).toBe("#ff8000");
   });
 });

@@ -2,11 +2,11 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { LogLine, PageMessage } from "../src/protocol";
 import { bandwidthText, rateText } from "../src/state/monitor/figure-text";
-import { levelOf, lineText, LogState, MOST_LINES } from "../src/state/monitor/log";
+import { levelOf, lineText, LogState, MAX_LINES } from "../src/state/monitor/log";
 import { ParametersState } from "../src/state/monitor/parameters";
 import { parameterText, parameterValues } from "../src/state/monitor/parameter-text";
 import { TeleopState } from "../src/state/monitor/teleop";
-import { motionOfKey, STILL, stick, together } from "../src/state/monitor/teleop-keys";
+import { motionOfKey, STILL, stickDeflection, sumOf } from "../src/state/monitor/teleop-keys";
 import { TopicsState } from "../src/state/monitor/topics";
 
 let sent: PageMessage[];
@@ -32,18 +32,18 @@ afterEach(() => {
 });
 
 describe("topics", () => {
-  it("are listed while somebody reads the list", () => {
+  it("are listed while a list of topics is visible", () => {
     const topics = new TopicsState(connection);
     const [one, two] = [{}, {}];
-    topics.list(one, true);
-    topics.list(two, true);
-    topics.list(one, false);
+    topics.watchList(one, true);
+    topics.watchList(two, true);
+    topics.watchList(one, false);
     expect(sent).toEqual([{ type: "watch_topics", listed: true, measured: [], opened: [] }]);
-    topics.list(two, false);
+    topics.watchList(two, false);
     expect(sent.at(-1)).toMatchObject({ listed: false });
   });
 
-  it("are forgotten when they are measured no more", () => {
+  it("are dropped when they are no longer measured", () => {
     const topics = new TopicsState(connection);
     topics.watch(["/a", "/b"], []);
     const traffic = ["/a", "/b"].map((topic) => ({ topic, rate: 1, bandwidth: 2, error: null }));
@@ -52,7 +52,7 @@ describe("topics", () => {
     expect([...topics.traffic.keys()]).toEqual(["/b"]);
   });
 
-  it("have figures that read well", () => {
+  it("have readable figures", () => {
     expect([12, 1500, 45_678, 2.5e6, 3e9].map(bandwidthText)).toEqual(["12 B/s", "1.50 KB/s", "45.7 KB/s", "2.50 MB/s", "3.00 GB/s"]);
     expect([0.2, 29.97, 1000.4].map(rateText)).toEqual(["0.20", "30.0", "1000"]);
   });
@@ -66,7 +66,7 @@ describe("texts of parameters", () => {
     expect(parameterText("bool_array", [])).toBe("[]");
   });
 
-  it("are read back", () => {
+  it("are parsed", () => {
     expect(parameterValues("string", "[a, b]")).toEqual(["[a, b]"]);
     expect(parameterValues("integer_array", "[1, 2]")).toEqual(["1", "2"]);
     expect(parameterValues("double_array", "1.5, 2")).toEqual(["1.5", "2"]);
@@ -76,14 +76,14 @@ describe("texts of parameters", () => {
     expect(parameterValues("string_array", '["a, b]')).toBeNull();
   });
 
-  it("survive the way there and back", () => {
+  it("survive formatting and parsing", () => {
     const values = ["", "a,b", 'say "x"', "[1]", "ü"];
     expect(parameterValues("string_array", parameterText("string_array", values))).toEqual(values);
   });
 });
 
 describe("parameters", () => {
-  it("are those of the node that is chosen", () => {
+  it("are those of the selected node", () => {
     const parameters = new ParametersState(connection);
     parameters.watch(true);
     parameters.choose("/a");
@@ -103,7 +103,7 @@ function line(part: Partial<LogLine>): LogLine {
 describe("the log", () => {
   const receive = (lines: LogLine[], missed = 0): void => connection.message.emit({ type: "log_lines", lines, missed });
 
-  it("shows what passes the filters", () => {
+  it("shows the records that pass the filters", () => {
     const log = new LogState(connection, storage);
     receive([line({ level: 10 }), line({ level: 40, node: "base", message: "Hot" }), line({})]);
     log.setLevel(10, false);
@@ -117,7 +117,7 @@ describe("the log", () => {
     expect(new LogState(connection, storage).levels.has(10)).toBe(false);
   });
 
-  it("holds while it is paused, and goes on with all that came", () => {
+  it("is frozen while paused, and then shows all that arrived", () => {
     const log = new LogState(connection, storage);
     log.setPaused(true);
     receive([line({})]);
@@ -126,18 +126,18 @@ describe("the log", () => {
     expect(log.shown).toHaveLength(1);
   });
 
-  it("keeps so many records and no more", () => {
+  it("keeps a limited number of records", () => {
     const log = new LogState(connection, storage);
     for (let block = 0; block < 45; block++) {
       receive(Array.from({ length: 1000 }, (_, index) => line({ message: String(block * 1000 + index) })), 1);
     }
-    expect(log.lines.length).toBeLessThanOrEqual(MOST_LINES);
+    expect(log.lines.length).toBeLessThanOrEqual(MAX_LINES);
     expect(log.shown).toHaveLength(log.lines.length);
     expect(log.shown.at(-1)?.message).toBe("44999");
     expect(log.missed).toBe(45);
   });
 
-  it("is copied as on the console", () => {
+  it("is copied in the format of the console", () => {
     const text = lineText(line({ level: 30, file: "/x/talker.py", line: 7 }), "WARN");
     expect(text).toBe("[WARN] [1.500000000] [talker]: hello (/x/talker.py:7)");
     expect([5, 10, 25, 50, 99].map((level) => levelOf({ level }))).toEqual([10, 10, 20, 50, 50]);
@@ -148,7 +148,7 @@ describe("driving", () => {
   const drives = (): number[][] =>
     sent.flatMap((message) => (message.type === "drive" ? [[message.linear[0] ?? 0, message.angular[2] ?? 0]] : []));
 
-  it("by keys is as in teleop_twist_keyboard", () => {
+  it("by keys works as in teleop_twist_keyboard", () => {
     expect(motionOfKey("i", false)).toEqual({ ...STILL, x: 1 });
     expect(motionOfKey("m", false)).toEqual({ ...STILL, x: -1, turn: -1 });
     expect(motionOfKey(".", false)).toEqual({ ...STILL, x: -1, turn: 1 });
@@ -156,15 +156,15 @@ describe("driving", () => {
     expect(motionOfKey("ArrowLeft", true)).toEqual({ ...STILL, y: 1 });
     expect(motionOfKey("a", false)).toEqual({ ...STILL, turn: 1 });
     expect(motionOfKey("x", false)).toBeNull();
-    expect(together([motionOfKey("w", false)!, motionOfKey("i", false)!, motionOfKey("a", false)!])).toEqual({ ...STILL, x: 1, turn: 1 });
+    expect(sumOf([motionOfKey("w", false)!, motionOfKey("i", false)!, motionOfKey("a", false)!])).toEqual({ ...STILL, x: 1, turn: 1 });
   });
 
-  it("by a stick has play in the middle", () => {
-    expect([0.1, -0.1, 1, -1].map((value) => stick(value))).toEqual([0, 0, 1, -1]);
-    expect(stick(0.5)).toBeGreaterThan(0.4);
+  it("by a stick has a dead zone in the middle", () => {
+    expect([0.1, -0.1, 1, -1].map((value) => stickDeflection(value))).toEqual([0, 0, 1, -1]);
+    expect(stickDeflection(0.5)).toBeGreaterThan(0.4);
   });
 
-  it("repeats what is held and ends with one zero", () => {
+  it("repeats the command while a key is held and ends with a single zero", () => {
     const teleop = new TeleopState(connection, storage);
     teleop.setOpen(true);
     expect(sent.at(-1)).toEqual({ type: "aim_teleop", target: { topic: "/cmd_vel", kind: "auto", frame_id: "base_link" } });
@@ -198,7 +198,7 @@ describe("driving", () => {
     expect(drives()).toHaveLength(count);
   });
 
-  it("keeps its settings", () => {
+  it("stores its settings", () => {
     new TeleopState(connection, storage).configure({ topic: "/robot/cmd_vel", rate: 10 });
     expect(new TeleopState(connection, storage).settings).toMatchObject({ topic: "/robot/cmd_vel", rate: 10, linear: 0.5 });
     texts.set("linkwright.teleop.1", "{");

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { NodeGraph } from "../src/protocol";
-import { layered, type Layout, type Link } from "../src/state/monitor/graph-layout";
+import { layOutLayers, type Layout, type Link } from "../src/state/monitor/graph-layout";
 import { drawnGraph, type GraphOptions } from "../src/state/monitor/graph-model";
 import { isotonic } from "../src/state/monitor/isotonic";
 
@@ -19,7 +19,7 @@ function overlaps({ boxes }: Layout): string[] {
 
 describe("the layout", () => {
   it("goes from left to right", () => {
-    const { boxes, routes } = layered(["a", "b", "c"].map(box), [link("a", "b"), link("b", "c")]);
+    const { boxes, routes } = layOutLayers(["a", "b", "c"].map(box), [link("a", "b"), link("b", "c")]);
     const xs = ["a", "b", "c"].map((id) => boxes.get(id)?.x ?? 0);
     expect(xs[0]).toBeLessThan(xs[1] ?? 0);
     expect(xs[1]).toBeLessThan(xs[2] ?? 0);
@@ -28,10 +28,10 @@ describe("the layout", () => {
     expect(last?.[0]).toBe((xs[1] ?? 0) - 50);
   });
 
-  it("keeps boxes apart, and everything inside", () => {
+  it("keeps boxes apart and within the drawing", () => {
     const ids = Array.from({ length: 40 }, (_, index) => `n${index}`);
     const links = ids.flatMap((id, index) => [link(id, `n${(index * 7 + 3) % 40}`), link(id, `n${(index * 3 + 11) % 40}`)]);
-    const layout = layered(ids.map(box), links);
+    const layout = layOutLayers(ids.map(box), links);
     expect(layout.boxes.size).toBe(40);
     expect(overlaps(layout)).toEqual([]);
     for (const { x, y, width, height } of layout.boxes.values()) {
@@ -42,21 +42,21 @@ describe("the layout", () => {
     }
   });
 
-  it("bears cycles, and draws two links between the same boxes apart", () => {
-    const layout = layered(["a", "b"].map(box), [link("a", "b"), link("b", "a")]);
+  it("handles cycles, and separates two links between the same boxes", () => {
+    const layout = layOutLayers(["a", "b"].map(box), [link("a", "b"), link("b", "a")]);
     const [there, back] = layout.routes;
     expect(there?.points[0]?.[1]).not.toBe(back?.points[0]?.[1]);
     expect(back?.points[0]?.[0]).toBeGreaterThan(back?.points.at(-1)?.[0] ?? 0);
   });
 
-  it("untangles what can be untangled", () => {
-    const layout = layered(["a", "b", "x", "y"].map(box), [link("a", "y"), link("b", "x")]);
+  it("removes avoidable crossings", () => {
+    const layout = layOutLayers(["a", "b", "x", "y"].map(box), [link("a", "y"), link("b", "x")]);
     const y = (id: string): number => layout.boxes.get(id)?.y ?? 0;
     expect(Math.sign(y("a") - y("b"))).toBe(Math.sign(y("y") - y("x")));
   });
 
-  it("leads long links past the boxes between", () => {
-    const layout = layered(["a", "b", "c"].map(box), [link("a", "b"), link("b", "c"), link("a", "c")]);
+  it("routes long links around the boxes between their ends", () => {
+    const layout = layOutLayers(["a", "b", "c"].map(box), [link("a", "b"), link("b", "c"), link("a", "c")]);
     const way = layout.routes.find(({ from, to }) => from === "a" && to === "c");
     expect(way?.points).toHaveLength(3);
     const middle = layout.boxes.get("b");
@@ -65,29 +65,29 @@ describe("the layout", () => {
 
   it("puts boxes without links below, in rows", () => {
     const ids = ["a", "b", ...Array.from({ length: 12 }, (_, index) => `alone${index}`)];
-    const layout = layered(ids.map(box), [link("a", "b")]);
+    const layout = layOutLayers(ids.map(box), [link("a", "b")]);
     expect(overlaps(layout)).toEqual([]);
     const below = ids.slice(2).map((id) => layout.boxes.get(id)?.y ?? 0);
     expect(Math.min(...below)).toBeGreaterThan(layout.boxes.get("a")?.y ?? 0);
     expect(new Set(below).size).toBeGreaterThan(1);
   });
 
-  it("of nothing is nothing", () => {
-    expect(layered([], [])).toMatchObject({ width: 0, height: 0 });
+  it("of an empty graph is empty", () => {
+    expect(layOutLayers([], [])).toMatchObject({ width: 0, height: 0 });
   });
 
-  it("takes no time for hundreds of nodes", () => {
+  it("is fast for hundreds of nodes", () => {
     const ids = Array.from({ length: 300 }, (_, index) => `n${index}`);
     const links = ids.slice(1).map((id, index) => link(`n${Math.floor(index / 3)}`, id));
     const started = performance.now();
-    layered(ids.map(box), links);
+    layOutLayers(ids.map(box), links);
     expect(performance.now() - started).toBeLessThan(1000);
   });
 });
 
-describe("averaging neighbours in disorder", () => {
-  it("leaves order alone", () => expect(isotonic([1, 2, 2, 5])).toEqual([1, 2, 2, 5]));
-  it("averages", () => expect(isotonic([3, 1, 2, 10])).toEqual([2, 2, 2, 10]));
+describe("averaging unordered neighbours", () => {
+  it("does not change ordered values", () => expect(isotonic([1, 2, 2, 5])).toEqual([1, 2, 2, 5]));
+  it("averages values out of order", () => expect(isotonic([3, 1, 2, 10])).toEqual([2, 2, 2, 10]));
 });
 
 const GRAPH: NodeGraph = {
@@ -110,8 +110,8 @@ function labels(options: Partial<GraphOptions>): string[] {
   return drawnGraph(GRAPH, { ...OPTIONS, ...options }).vertices.map(({ kind, label }) => `${kind} ${label}`);
 }
 
-describe("what is drawn of a graph", () => {
-  it("is nodes and the topics between them", () => {
+describe("the drawn graph", () => {
+  it("has nodes and the topics between them", () => {
     expect(labels({})).toEqual([
       "node /base",
       "node /left/arm",
@@ -125,19 +125,19 @@ describe("what is drawn of a graph", () => {
     ]);
   });
 
-  it("leaves out and takes in what the filters say", () => {
+  it("applies the filters", () => {
     expect(labels({ mode: "all" })).toContain("topic /echo");
     expect(labels({ debug: true })).toContain("topic /rosout");
     expect(labels({ tf: false })).not.toContain("topic /tf");
   });
 
-  it("joins nodes directly when topics are not shown", () => {
+  it("connects nodes directly if topics are not shown", () => {
     const { vertices, edges } = drawnGraph(GRAPH, { ...OPTIONS, mode: "nodes" });
     expect(vertices.every(({ kind }) => kind === "node")).toBe(true);
     expect(edges).toContainEqual({ from: "node:/base", to: "node:/talker", topics: ["/move", "/tf"] });
   });
 
-  it("puts the nodes of a namespace together, with what they say among themselves", () => {
+  it("merges the nodes of a namespace, including the topics between them", () => {
     const { vertices, edges } = drawnGraph(GRAPH, { ...OPTIONS, grouped: true });
     expect(vertices).toContainEqual({ id: "group:/left", kind: "group", label: "/left/", count: 2 });
     expect(vertices.map(({ label }) => label)).not.toContain("/left/grip");

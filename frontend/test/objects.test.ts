@@ -18,14 +18,14 @@ import { AxesBatch } from "../src/scene/objects/axes-batch";
 import { CopyBatch } from "../src/scene/objects/copy-batch";
 import { CovarianceBatch, type CovarianceStyle } from "../src/scene/objects/covariance-batch";
 import { principalAxes } from "../src/scene/objects/eigen";
-import { ballGeometry, coneGeometry, cubeGeometry, rodGeometry } from "../src/scene/objects/geometries";
+import { sphereGeometry, coneGeometry, cubeGeometry, rodGeometry } from "../src/scene/objects/geometries";
 import { ribbons, segmentsOf, stripsOf } from "../src/scene/objects/ribbons";
 
 interface Boxed {
   expandBox(box: Box3): void;
 }
 
-/** Bounds with two decimals. */
+/** Returns bounds with two decimals. */
 function bounds(...batches: Boxed[]): { min: number[]; max: number[] } {
   const box = new Box3();
   for (const batch of batches) batch.expandBox(box);
@@ -34,7 +34,7 @@ function bounds(...batches: Boxed[]): { min: number[]; max: number[] } {
 }
 
 describe("geometries", () => {
-  it("have the sizes that batches count on", () => {
+  it("have the sizes that batches rely on", () => {
     const box = (geometry: { computeBoundingBox(): void; boundingBox: Box3 | null }): Box3 => {
       geometry.computeBoundingBox();
       return geometry.boundingBox!;
@@ -42,13 +42,13 @@ describe("geometries", () => {
     expect(box(rodGeometry(16)).min.toArray().map(Math.fround)).toEqual([0, -0.5, -0.5]);
     expect(box(rodGeometry(16)).max.toArray().map(Math.fround)).toEqual([1, 0.5, 0.5]);
     expect(box(coneGeometry(16)).max.x).toBeCloseTo(1);
-    expect(box(ballGeometry(16)).getSize(new Vector3()).z).toBeCloseTo(1);
+    expect(box(sphereGeometry(16)).getSize(new Vector3()).z).toBeCloseTo(1);
     expect(box(cubeGeometry()).getSize(new Vector3()).toArray()).toEqual([1, 1, 1]);
   });
 });
 
 describe("CopyBatch", () => {
-  it("draws copies that can be seen through from the farthest to the nearest, and knows them still", () => {
+  it("draws translucent copies from the farthest to the nearest, and still identifies them", () => {
     const parent = new Group();
     const batch = new CopyBatch(parent, cubeGeometry());
     batch.begin(3);
@@ -68,7 +68,7 @@ describe("CopyBatch", () => {
     batch.dispose();
   });
 
-  it("draws what the camera sees, whichever camera draws, and knows all copies still", () => {
+  it("draws what is visible to each camera, and still identifies all copies", () => {
     const parent = new Group();
     const batch = new CopyBatch(parent, cubeGeometry());
     batch.begin(3);
@@ -96,7 +96,7 @@ describe("CopyBatch", () => {
     batch.dispose();
   });
 
-  it("puts copies where their matrices say", () => {
+  it("places copies according to their matrices", () => {
     const parent = new Group();
     const batch = new CopyBatch(parent, cubeGeometry());
     batch.begin(3);
@@ -114,7 +114,7 @@ describe("CopyBatch", () => {
 });
 
 describe("ArrowBatch", () => {
-  it("points along x with a head behind the shaft", () => {
+  it("points along x, with the head after the shaft", () => {
     const arrows = new ArrowBatch(new Group(), 16);
     arrows.begin(1);
     const shape = { shaftLength: 1, shaftDiameter: 0.1, headLength: 0.3, headDiameter: 0.2 };
@@ -123,7 +123,7 @@ describe("ArrowBatch", () => {
     expect(bounds(arrows)).toEqual({ min: [0, -0.1, 1.9], max: [1.3, 0.1, 2.1] });
   });
 
-  it("can be aimed anywhere", () => {
+  it("points in any direction", () => {
     const pose = alongX(new Vector3(1, 2, 3), new Vector3(0, 0, -7), new Matrix4());
     expect(new Vector3(1, 0, 0).applyMatrix4(pose).distanceTo(new Vector3(1, 2, 2))).toBeLessThan(1e-6);
     const back = alongX(new Vector3(), new Vector3(-1, 0, 0), new Matrix4());
@@ -132,7 +132,7 @@ describe("ArrowBatch", () => {
 });
 
 describe("AxesBatch", () => {
-  it("is as thick as RViz's radius says", () => {
+  it("has the thickness that RViz draws for a radius", () => {
     const axes = new AxesBatch(new Group());
     axes.setShape(2, 0.5, 16);
     axes.begin(1);
@@ -143,7 +143,7 @@ describe("AxesBatch", () => {
 });
 
 describe("ribbons", () => {
-  it("share the vertices of a corner, across the middle of both directions", () => {
+  it("share the vertices of a corner, along the bisector of both directions", () => {
     const made = ribbons([new Float32Array([0, 0, 0, 1, 0, 0, 1, 3, 0])]);
     expect(made.positions).toHaveLength(18);
     expect([...made.sides]).toEqual([-0.5, 0.5, -0.5, 0.5, -0.5, 0.5]);
@@ -152,20 +152,20 @@ describe("ribbons", () => {
     expect([...made.indices]).toEqual([0, 1, 3, 0, 3, 2, 2, 3, 5, 2, 5, 4]);
   });
 
-  it("do not join strips", () => {
+  it("do not connect strips", () => {
     const line = new Float32Array([0, 0, 0, 1, 0, 0]);
     const made = ribbons([line, line], [new Float32Array(8).fill(1), new Float32Array(8).fill(0.5)]);
     expect([...made.indices]).toEqual([0, 1, 3, 0, 3, 2, 4, 5, 7, 4, 7, 6]);
     expect([...made.colors!.subarray(16, 20)]).toEqual([0.5, 0.5, 0.5, 0.5]);
   });
 
-  it("go on where a line turns right back, and hold a strip of one point", () => {
+  it("handle lines that reverse, and strips of one point", () => {
     const made = ribbons([new Float32Array([0, 0, 0, 1, 0, 0, 0, 0, 0]), new Float32Array([5, 5, 5])]);
     expect([...made.directions.subarray(6, 9)]).toEqual([-1, 0, 0]);
     expect(made.indices).toHaveLength(12);
   });
 
-  it("come from segments and go to them", () => {
+  it("convert from segments and back", () => {
     const strip = new Float32Array([0, 0, 0, 1, 0, 0, 1, 1, 0]);
     expect([...segmentsOf(strip)]).toEqual([0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 1, 0]);
     expect(stripsOf(segmentsOf(strip))).toHaveLength(2);
@@ -173,7 +173,7 @@ describe("ribbons", () => {
 });
 
 describe("principal axes", () => {
-  it("make the matrix again", () => {
+  it("reproduce the matrix", () => {
     const m = [4, 1, -2, 1, 3, 0.5, -2, 0.5, 6] as const;
     const { values, axes } = principalAxes(m);
     const [x, y, z] = [new Vector3(), new Vector3(), new Vector3()];
@@ -207,16 +207,16 @@ describe("CovarianceBatch", () => {
     return bounds(batch);
   }
 
-  it("draws one standard deviation of the position to either side", () => {
+  it("draws one standard deviation of the position in each direction", () => {
     expect(drawn([4, 1, 0.25, 1, 1, 1], POSITION)).toEqual({ min: [-2, -1, -0.5], max: [2, 1, 0.5] });
   });
 
-  it("does not turn the position with the pose", () => {
+  it("does not rotate the position with the pose", () => {
     const turned = new Quaternion().setFromAxisAngle(new Vector3(0, 0, 1), Math.PI / 2).toArray();
     expect(drawn([4, 1, 0.25, 1, 1, 1], POSITION, [1, 0, 0, ...turned]).max).toEqual([3, 1, 0.5]);
   });
 
-  it("draws an ellipse and a triangle for a pose in a plane", () => {
+  it("draws an ellipse and a triangle for a planar pose", () => {
     expect(drawn([4, 1, 0, 0, 0, 0.01], POSITION)).toEqual({ min: [-2, -1, 0], max: [2, 1, 0] });
     const { min, max } = drawn([4, 1, 0, 0, 0, 0.01], ORIENTATION);
     expect([min[0], max[0], max[1]]).toEqual([0, 2, 0.2]);
@@ -224,20 +224,20 @@ describe("CovarianceBatch", () => {
 
   it("tilts each axis by the rotations about the others", () => {
     const { min, max } = drawn([1, 1, 1, 0.01, 0.04, 0.0001], ORIENTATION);
-    // Pitch moves x along z and z along x, roll moves y along z and z along y, yaw hardly anything.
+    // Pitch moves x along z and z along x, roll moves y along z and z along y, yaw has almost no effect.
     expect(max).toEqual([2, 2, 2]);
     expect(min[2]).toBeCloseTo(-0.41, 1);
     expect(min[0]).toBeCloseTo(-0.41, 1);
     expect(min[1]).toBeCloseTo(-0.2, 1);
   });
 
-  it("draws nothing for what is no covariance", () => {
+  it("draws nothing for an invalid covariance", () => {
     expect(drawn([-1, 1, 1, 1, 1, 1], POSITION).min).toEqual([Infinity, Infinity, Infinity]);
   });
 });
 
 describe("colours of efforts", () => {
-  it("go from violet to red", () => {
+  it("range from violet to red", () => {
     expect([0, 0.2, 0.4, 0.6, 0.8, 1].map((value) => rainbow(value).map((part) => Math.round(part)))).toEqual([
       [1, 0, 1],
       [0, 0, 1],
@@ -266,7 +266,7 @@ describe("picking", () => {
     expect(new Box3().setFromObject(parent).max.toArray()).toEqual([5.5, 0.5, 2.5]);
   });
 
-  it("tells an arrow by its shaft and by its head", () => {
+  it("hits an arrow by its shaft and by its head", () => {
     const arrows = new ArrowBatch(new Group());
     const shape = { shaftLength: 1, shaftDiameter: 0.1, headLength: 0.3, headDiameter: 0.2 };
     arrows.begin(2);

@@ -7,20 +7,20 @@ function of(topic: string, message: string, ...classes: string[]): string | null
 }
 
 describe("the obvious display of a topic", () => {
-  it("is called as its messages are", () => {
+  it("has the name of the message type", () => {
     expect(of("/scan", "sensor_msgs/msg/LaserScan", "LaserScan")).toBe("LaserScan");
     expect(of("/camera/image", "sensor_msgs/msg/Image", "Camera", "DepthCloud", "Detections", "Image")).toBe("Image");
     expect(of("/camera/image/compressed", "sensor_msgs/msg/CompressedImage", "Camera", "Image")).toBe("Image");
     expect(of("/pose", "geometry_msgs/msg/PoseWithCovarianceStamped", "Pose", "PoseWithCovariance")).toBe("PoseWithCovariance");
   });
 
-  it("is the one that the topic's name speaks of where the type says nothing", () => {
+  it("is that which the topic's name suggests if the type does not decide", () => {
     expect(of("/robot_description", "std_msgs/msg/String", "World", "RobotModel")).toBe("RobotModel");
     expect(of("/world_description", "std_msgs/msg/String", "World", "RobotModel")).toBe("World");
     expect(of("/map", "nav_msgs/msg/OccupancyGrid", "Map")).toBe("Map");
   });
 
-  it("is none where no display shows it", () => {
+  it("does not exist if no display shows the topic", () => {
     expect(of("/chatter", "std_msgs/msg/Bool")).toBeNull();
   });
 });

@@ -12,7 +12,7 @@ let sent: PageMessage[];
 let modelling: Modelling;
 let placer: Placer;
 
-/** On a canvas of which a pixel is a metre, seen from above. */
+/** A canvas seen from above, with one metre per pixel. */
 function pointer(type: ToolEvent["type"], x: number, y: number, part: Partial<ToolEvent> = {}): boolean {
   const button = type === "move" ? null : "left";
   const rest = { dx: 0, dy: 0, wheel: 0, left: type !== "up", middle: false, right: false, shift: false, ctrl: false, alt: false, click: false };
@@ -25,12 +25,12 @@ beforeEach(() => {
   vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
   modelling = new Modelling(connection, browserStorage());
   const rayAt = (x: number, y: number): Raycaster => new Raycaster(new Vector3(x, y, 5), new Vector3(0, 0, -1));
-  const stage = { aids: new Group(), world: null, picker: { rayAt }, loop: { invalidate: () => undefined } };
+  const stage = { overlays: new Group(), world: null, picker: { rayAt }, loop: { invalidate: () => undefined } };
   placer = new Placer(stage as unknown as Stage, modelling);
 });
 
-describe("putting entities into the world", () => {
-  it("needs a click, on the grid or with Ctrl beside it; Shift keeps the entity in hand", () => {
+describe("placing entities in the world", () => {
+  it("takes a click, snapped to the grid unless Ctrl is held; Shift continues placing", () => {
     modelling.place({ kind: "sphere", address: "" });
     pointer("down", 1.04, 2);
     pointer("up", 1.04, 2, { click: true, shift: true });
@@ -50,7 +50,7 @@ describe("putting entities into the world", () => {
     expect(sent).toEqual([]);
   });
 
-  it("draws a wall from point to point, and then others", () => {
+  it("draws walls from point to point, one after another", () => {
     modelling.place({ kind: "wall", address: "" });
     expect(pointer("down", 0, 0)).toBe(true);
     expect(pointer("move", 4, 0)).toBe(true);
@@ -64,7 +64,7 @@ describe("putting entities into the world", () => {
     expect(modelling.placing?.kind).toBe("wall");
   });
 
-  it("drops what is dragged from the bar", () => {
+  it("places an entity dragged from the bar", () => {
     placer.drop({ kind: "model", address: "model://chair" }, 2, 3);
     expect(sent).toEqual([{ type: "add_entity", shape: "model", address: "model://chair", pose: [2, 3, 0, 0, 0, 0], size: [] }]);
   });

@@ -19,24 +19,24 @@ function storage(): Pick<Storage, "getItem" | "setItem"> {
 }
 
 describe("names of fields", () => {
-  it("are a topic and a path", () => {
+  it("consist of a topic and a path", () => {
     expect(parseField("/joint_states.position[2]")).toEqual({ topic: "/joint_states", path: "position[2]" });
     expect(parseField(" odom.twist.twist.linear.x ")).toEqual({ topic: "/odom", path: "twist.twist.linear.x" });
     expect(parseField("/a/b.c[x.y]")).toEqual({ topic: "/a/b", path: "c[x.y]" });
     expect(fieldText({ topic: "/a", path: "b.c" })).toBe("/a.b.c");
   });
 
-  it("need both", () => {
+  it("require both", () => {
     for (const text of ["", "/odom", "/odom.", ".x", "/a b.c"]) expect(parseField(text)).toBeNull();
   });
 
-  it("stand beside short values", () => {
+  it("are shown next to short values", () => {
     expect([1 / 3, 1e-9, 5, NaN, -Infinity, null].map(valueText)).toEqual(["0.333333", "1e-9", "5", "nan", "-inf", ""]);
   });
 });
 
 describe("frames of samples", () => {
-  it("are read as they were packed", () => {
+  it("are unpacked", () => {
     const bytes = new ArrayBuffer(16 + 8 + 3 * 8 * 2 + 8);
     const view = new DataView(bytes);
     view.setUint32(0, 3, true);
@@ -55,14 +55,14 @@ describe("frames of samples", () => {
     expect([other?.id, other?.values.length]).toEqual([9, 0]);
   });
 
-  it("are not mistaken for others", () => {
+  it("are not confused with other frames", () => {
     expect(unpackSamples(new ArrayBuffer(64))).toBeNull();
     expect(unpackSamples(new ArrayBuffer(3))).toBeNull();
   });
 });
 
-describe("a buffer", () => {
-  it("grows, and forgets the oldest when it is full", () => {
+describe("a series buffer", () => {
+  it("grows, and drops the oldest samples when full", () => {
     const made = new SeriesBuffer(5000);
     for (let block = 0; block < 100; block++) {
       const times = Array.from({ length: 100 }, (_, index) => block * 100 + index);
@@ -75,7 +75,7 @@ describe("a buffer", () => {
     expect(times.every((time, index) => index === 0 || time === (times[index - 1] ?? 0) + 1)).toBe(true);
   });
 
-  it("knows both times", () => {
+  it("stores both times", () => {
     const made = new SeriesBuffer();
     made.append([100, 101], [5, NaN], [1, 2]);
     expect([...made.times("stamp")]).toEqual([5, 101]);
@@ -83,27 +83,27 @@ describe("a buffer", () => {
     expect(made.indexFrom("received", 100.5)).toBe(1);
   });
 
-  it("begins anew when stamps go back", () => {
+  it("restarts when stamps go back", () => {
     const made = new SeriesBuffer();
     made.append([100, 101, 102], [50, 51, 0], [1, 2, 3]);
     expect([...made.values]).toEqual([3]);
   });
 });
 
-describe("what is drawn", () => {
-  it("is every sample while there are few, at the times of all series", () => {
+describe("the drawn samples", () => {
+  it("are all samples while there are few, at the times of all series", () => {
     const [times, a, b] = plotTable([buffer([1, 10], [2, 20]), buffer([2, 5], [3, NaN])], "received", 0, 10, 100);
     expect(times).toEqual([1, 2, 3]);
     expect(a).toEqual([10, 20, undefined]);
     expect(b).toEqual([undefined, 5, null]);
   });
 
-  it("reaches beyond both edges", () => {
+  it("extend beyond both edges", () => {
     const [times] = plotTable([buffer([1, 1], [2, 2], [3, 3], [4, 4], [5, 5])], "received", 2.5, 3.5, 100);
     expect(times).toEqual([2, 3, 4]);
   });
 
-  it("keeps the extremes of each column when there are many samples", () => {
+  it("keep the extremes of each column if there are many samples", () => {
     const many = new SeriesBuffer();
     const times = Array.from({ length: 20_000 }, (_, index) => index / 1000);
     many.append(times, times, times.map((time, index) => (index === 12_345 ? 99 : Math.sin(time))));
@@ -115,7 +115,7 @@ describe("what is drawn", () => {
     expect(Math.abs((columns[at] ?? 0) - 12.345)).toBeLessThan(10 / 400);
   });
 
-  it("does not flicker while the window moves", () => {
+  it("do not flicker while the window moves", () => {
     const many = new SeriesBuffer();
     const times = Array.from({ length: 20_000 }, (_, index) => index / 1000);
     many.append(times, times, times.map((time) => Math.sin(40 * time)));
@@ -124,11 +124,11 @@ describe("what is drawn", () => {
     const known = new Map(firstTimes.map((time, row) => [time.toFixed(6), first?.[row]]));
     const shared = laterTimes.slice(4, -8).map((time, row) => [known.get(time.toFixed(6)), later?.[row + 4]]);
     expect(shared.length).toBeGreaterThan(700);
-    // The column at the right edge was not complete yet.
+    // The column at the right edge was still incomplete.
     for (const [before, after] of shared.slice(0, 780)) expect(before).toBe(after);
   });
 
-  it("is saved as CSV", () => {
+  it("are saved as CSV", () => {
     const text = csvText(["/a.x", 'b"y'], [buffer([1, 10], [2, 20]), buffer([2, 5], [9, 1])], "received", 1, 2);
     expect(text).toBe('time,/a.x,"b""y"\n1.000000,10,\n2.000000,20,5\n');
   });
@@ -142,7 +142,7 @@ describe("plots", () => {
     return { sent, plots: new PlotsState(connection, texts), connection };
   }
 
-  it("ask for samples only while the panel is open, and again after a loss of the connection", () => {
+  it("request samples only while the panel is open, and again after the connection was lost", () => {
     const { sent, plots, connection } = made();
     plots.addSeries(plots.addPlot(), { topic: "/a", path: "x" });
     expect(sent).toEqual([]);
@@ -155,7 +155,7 @@ describe("plots", () => {
     expect(sent.at(-1)).toEqual({ type: "watch_series", series: [], seconds: 30 });
   });
 
-  it("follow the newest value, and hold when they are paused", () => {
+  it("follow the newest value, and freeze when paused", () => {
     const { plots, connection } = made();
     plots.addSeries(plots.addPlot(), { topic: "/a", path: "x" });
     const id = plots.series[0]?.id ?? 0;
@@ -174,7 +174,7 @@ describe("plots", () => {
     expect(plots.series[0]?.buffer.length).toBe(2);
   });
 
-  it("begin anew where another time is shown, and take what was before it", () => {
+  it("restart when the other time is shown, and include earlier samples", () => {
     const { plots, connection } = made();
     plots.addSeries(plots.addPlot(), { topic: "/a", path: "x" });
     const id = plots.series[0]?.id ?? 0;
@@ -194,7 +194,7 @@ describe("plots", () => {
     expect(values()).toEqual([48, 49, 50]);
   });
 
-  it("are remembered", () => {
+  it("are stored", () => {
     const texts = storage();
     const { plots } = made(texts);
     plots.addSeries(plots.addPlot(), { topic: "/a", path: "x[1]" });
@@ -206,7 +206,7 @@ describe("plots", () => {
     expect(again.series.map(fieldText)).toEqual(["/a.x[1]"]);
   });
 
-  it("take no field twice", () => {
+  it("do not accept a field twice", () => {
     const { plots } = made();
     const plot = plots.addPlot();
     plots.addSeries(plot, { topic: "/a", path: "x" });

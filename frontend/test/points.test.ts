@@ -1,10 +1,10 @@
 import { expect, test } from "vitest";
-import { described } from "../src/scene/displays/cloud-description";
+import { describePoint } from "../src/scene/displays/cloud-description";
 import { mapPalette } from "../src/scene/displays/map-palette";
 import { nearestPoint } from "../src/scene/objects/nearest-point";
 import { cameraInImageFrame, imageZoom, projection } from "../src/scene/images/camera-projection";
-import { pixels } from "../src/scene/images/image-canvas";
-import { seenThrough } from "../src/scene/images/seen-through";
+import { rgbaOf } from "../src/scene/images/image-canvas";
+import { isShownInCamera } from "../src/scene/images/shown-in-camera";
 import { DisplayState } from "../src/state/displays";
 import { PropertyNode, PropertyRows } from "../src/state/properties";
 import { Vector3 } from "three";
@@ -13,21 +13,21 @@ import { display, property } from "./messages";
 const ALONG_X = [1, 0, 0] as const;
 const ORIGIN = [0, 0, 0] as const;
 
-test("the first point near a ray is found", () => {
+test("finds the first point near a ray", () => {
   const points = new Float32Array([5, 0.05, 0, 2, 0.05, 0, -1, 0, 0, 1, 1, 0]);
   expect(nearestPoint(points, ORIGIN, ALONG_X, 0.1, 0)).toEqual({ index: 1, distance: 2 });
   expect(nearestPoint(points, ORIGIN, ALONG_X, 0.01, 0)).toBeNull();
 });
 
-test("a pointer covers more the farther away it points", () => {
+test("a pointer covers a larger area at a greater distance", () => {
   const points = new Float32Array([10, 0.05, 0]);
   expect(nearestPoint(points, ORIGIN, ALONG_X, 0, 0.004)).toBeNull();
   expect(nearestPoint(points, ORIGIN, ALONG_X, 0, 0.006)?.index).toBe(0);
 });
 
-test("a point is described as RViz does", () => {
+test("a point is described as in RViz", () => {
   const fields = { intensity: 0.5, rgb: "#102030ff", bad: "nan" };
-  const { name, children } = described(7, "", new Float32Array([1, 2, 3.5]), fields);
+  const { name, children } = describePoint(7, "", new Float32Array([1, 2, 3.5]), fields);
   expect(name).toBe("Point 7");
   expect(children?.map((each) => [each.name, each.value])).toEqual([
     ["Position", "1; 2; 3.5"],
@@ -36,14 +36,14 @@ test("a point is described as RViz does", () => {
     ["alpha", "1"],
     ["5: bad", "nan"],
   ]);
-  expect(described(0, "12", new Float32Array(3), null).name).toBe("Point 0 [cloud 12]");
+  expect(describePoint(0, "12", new Float32Array(3), null).name).toBe("Point 0 [cloud 12]");
 });
 
 function color(palette: Uint8Array, value: number): number[] {
   return [...palette.subarray(value * 4, value * 4 + 4)];
 }
 
-test("maps have RViz's shades", () => {
+test("maps have RViz's shades of grey", () => {
   const map = mapPalette("map", null);
   expect([0, 50, 100].map((value) => color(map, value)[0])).toEqual([255, 128, 0]);
   expect(color(map, 101)).toEqual([0, 255, 0, 255]);
@@ -52,7 +52,7 @@ test("maps have RViz's shades", () => {
   expect(color(map, 255)).toEqual([0x70, 0x89, 0x86, 255]);
 });
 
-test("costmaps go from blue to red, let free cells through and mark obstacles", () => {
+test("costmaps range from blue to red, with transparent free cells and marked obstacles", () => {
   const costmap = mapPalette("costmap", null);
   expect(color(costmap, 0)).toEqual([0, 0, 0, 0]);
   expect(color(costmap, 1)).toEqual([2, 0, 253, 255]);
@@ -69,10 +69,10 @@ test("a threshold makes cells free or occupied", () => {
   expect(color(mapPalette("raw", null), 200)).toEqual([200, 200, 200, 255]);
 });
 
-test("pixels of every kind become red, green, blue and alpha", () => {
+test("pixels of all encodings are converted to red, green, blue and alpha", () => {
   const frame = { width: 1, height: 1, columns: 1, rows: 1, camera: null, quality: 0, kind: "image_frame" } as const;
   const of = (encoding: "grey" | "rgb" | "rgba", data: number[]): number[] => [
-    ...pixels({ ...frame, encoding, data: new Uint8Array(data) }),
+    ...rgbaOf({ ...frame, encoding, data: new Uint8Array(data) }),
   ];
   expect(of("grey", [7])).toEqual([7, 7, 7, 255]);
   expect(of("rgb", [1, 2, 3])).toEqual([1, 2, 3, 255]);
@@ -90,7 +90,7 @@ const CAMERA = {
   offset_y: 0,
 };
 
-test("an image keeps its shape in any window", () => {
+test("an image keeps its aspect ratio in any window", () => {
   expect(imageZoom(CAMERA, 1, 640, 480)).toEqual([1, 1]);
   const [wideX, wideY] = imageZoom(CAMERA, 1, 1280, 480);
   expect([wideX, wideY]).toEqual([0.5, 1]);
@@ -98,9 +98,9 @@ test("an image keeps its shape in any window", () => {
   expect([highX, highY]).toEqual([1, 0.5]);
 });
 
-test("the camera projects as its matrix says", () => {
+test("the camera projects according to its matrix", () => {
   const matrix = projection(CAMERA, [1, 1], 100);
-  // A metre right at two metres: 160 pixels of the 320 from the middle to the edge.
+  // One metre to the right at a distance of two: 160 pixels of the 320 from the centre to the edge.
   const at = new Vector3(1, 0, -2).applyMatrix4(matrix);
   expect(at.x).toBeCloseTo(0.5);
   expect(at.y).toBeCloseTo(0);
@@ -109,12 +109,12 @@ test("the camera projects as its matrix says", () => {
   expect(new Vector3(0, 0, -100).applyMatrix4(matrix).z).toBeCloseTo(1);
 });
 
-test("the camera looks along its image's z, and stands beside its frame", () => {
+test("the camera looks along z of its image, offset from its frame", () => {
   const pose = cameraInImageFrame(CAMERA);
   expect(new Vector3(0, 0, -1).applyMatrix4(pose).toArray()).toEqual([0.1, expect.closeTo(0), expect.closeTo(1)]);
 });
 
-test("a display is seen through a camera when its box and those around it are on", () => {
+test("a display is shown in a camera if its box and those of its groups are ticked", () => {
   const box = (path: string, name: string, value: boolean, children: ReturnType<typeof property>[] = []) =>
     property({ id: path, name, kind: "bool", value, children });
   const rows = (inside: boolean, group: boolean): PropertyRows =>
@@ -124,8 +124,8 @@ test("a display is seen through a camera when its box and those around it are on
   const group = new DisplayState(display({ id: "1", cls: "rviz_common/Group", name: "Sensors" }));
   const cloud = new DisplayState(display({ id: "2", name: "Cloud" }));
   cloud.group = group;
-  expect(seenThrough(rows(true, true), cloud)).toBe(true);
-  expect(seenThrough(rows(false, true), cloud)).toBe(false);
-  expect(seenThrough(rows(true, false), cloud)).toBe(false);
-  expect(seenThrough(new PropertyRows([]), cloud)).toBe(true);
+  expect(isShownInCamera(rows(true, true), cloud)).toBe(true);
+  expect(isShownInCamera(rows(false, true), cloud)).toBe(false);
+  expect(isShownInCamera(rows(true, false), cloud)).toBe(false);
+  expect(isShownInCamera(new PropertyRows([]), cloud)).toBe(true);
 });

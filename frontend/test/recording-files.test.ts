@@ -1,6 +1,6 @@
 import { describe, expect, it, vi } from "vitest";
 import { socketUrl } from "../src/connection/connection";
-import { addressOf, recordingIn } from "../src/connection/recording-address";
+import { withRecording, recordingIn } from "../src/connection/recording-address";
 import { recordingAmong } from "../src/shell/recording-files";
 
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en, language: "en" }));
@@ -9,19 +9,19 @@ function named(...names: string[]): { name: string; file: Blob }[] {
   return names.map((name) => ({ name, file: new Blob(["x"]) }));
 }
 
-describe("what is dropped", () => {
-  it("is a recording by the names of its files", () => {
+describe("dropped files", () => {
+  it("are recognised as a recording by their names", () => {
     const { name, files } = recordingAmong("drive", named("notes.txt", "metadata.yaml", "drive_0.db3", "drive_1.db3.zstd", ".DS_Store"));
     expect(name).toBe("drive");
     expect(files.map((each) => each.name)).toEqual(["metadata.yaml", "drive_0.db3", "drive_1.db3.zstd"]);
   });
 
-  it("is that file where there is but one with messages", () => {
+  it("are a single recording file if only one has messages", () => {
     const { name, files } = recordingAmong("drive", named("metadata.yaml", "drive_0.mcap"));
     expect([name, files.length, files[0]?.name]).toEqual(["drive_0.mcap", 1, "drive_0.mcap"]);
   });
 
-  it("is none without files with messages", () => {
+  it("are no recording if none has messages", () => {
     expect(recordingAmong("images", named("a.png", "mcap")).files).toEqual([]);
     expect(recordingAmong("drive", named("metadata.yaml")).files).toEqual([]);
     expect(recordingAmong("robot.urdf", named("robot.urdf")).files).toEqual([]);
@@ -29,10 +29,10 @@ describe("what is dropped", () => {
 });
 
 describe("the page of a recording", () => {
-  it("is named by its address, and its socket is", () => {
-    const address = addressOf("http://localhost:7448/?displays=own", "abc");
+  it("has a name in its address and that of its socket", () => {
+    const address = withRecording("http://localhost:7448/?displays=own", "abc");
     expect(recordingIn(address)).toBe("abc");
     expect(socketUrl(address)).toBe("ws://localhost:7448/ws?recording=abc");
-    expect(addressOf(address, null)).toBe("http://localhost:7448/?displays=own");
+    expect(withRecording(address, null)).toBe("http://localhost:7448/?displays=own");
   });
 });

@@ -24,7 +24,7 @@ describe("recording", () => {
     connection.message.emit(told());
   });
 
-  it("offers the file to the page that asked for it, and to no other", () => {
+  it("offers the file only to the page that requested it", () => {
     const made: RecordedFile[] = [];
     const others: RecordedFile[] = [];
     const other = new RecordingControl(connection);
@@ -41,7 +41,7 @@ describe("recording", () => {
     expect(sent.map(({ type }) => type)).toEqual(["record_topics", "stop_recording"]);
   });
 
-  it("says once why it ended early", () => {
+  it("reports once why it ended early", () => {
     const why: string[] = [];
     recording.refused.on((text) => why.push(text));
     recording.record(["/tf"]);
@@ -52,21 +52,21 @@ describe("recording", () => {
     expect(recording.files).toEqual([FILE]);
   });
 
-  it("is not possible before the program says so, nor beside a recording", () => {
+  it("is impossible before the program allows it, or during another recording", () => {
     connection.message.emit({ type: "hello", protocol: 0, version: "", title: "", run: "1" });
     expect(recording.possible).toBe(false);
     connection.message.emit(told({ possible: false }));
     expect(recording.possible).toBe(false);
   });
 
-  it("tells bytes and seconds", () => {
+  it("formats bytes and seconds", () => {
     expect(amountText(75, 4.5e6)).toBe("1:15 · 4.5 MB");
     expect(sizeText(2.345e9)).toBe("2.35 GB");
     expect(sizeText(45_100)).toBe("45 kB");
   });
 });
 
-describe("the marked part of the last minutes", () => {
+describe("the marked part of the history", () => {
   let connection: Connection;
   let timeline: TimelineState;
 
@@ -77,7 +77,7 @@ describe("the marked part of the last minutes", () => {
     connection.message.emit({ type: "playhead", position: 104, playing: false, speed: 1, loop: false, seeks: 0, problem: "", live: false });
   });
 
-  it("begins and ends where the user says, in whichever order", () => {
+  it("starts and ends where the user marks, in either order", () => {
     timeline.markHere("start");
     expect(timeline.mark).toEqual({ start: 104, end: 110 });
     timeline.setMark({ start: 108, end: 103 });
@@ -86,7 +86,7 @@ describe("the marked part of the last minutes", () => {
     expect(timeline.mark).toEqual({ start: 103, end: 104 });
   });
 
-  it("goes with what is no longer kept", () => {
+  it("is removed with the messages that are dropped", () => {
     timeline.setMark({ start: 103, end: 108 });
     connection.message.emit({ type: "history_extent", start: 105, end: 120, size: 1, most: 2 });
     expect(timeline.mark).toEqual({ start: 105, end: 108 });

@@ -1,7 +1,7 @@
 import { Box3, PerspectiveCamera, Raycaster, Vector3 } from "three";
 import { describe, expect, it, vi } from "vitest";
 import type { LinkScene, Shape } from "../src/protocol";
-import { TOUCHED } from "../src/scene/layers";
+import { PICKABLE } from "../src/scene/layers";
 import { MeshLibrary } from "../src/scene/meshes/mesh-library";
 import { framePose } from "../src/scene/pose";
 import { RobotDrawing } from "../src/scene/robot/robot-drawing";
@@ -37,7 +37,7 @@ function link(name: string, ...visuals: Shape[]): LinkScene {
   return { name, frame: name, parent_joint: null, visuals, collisions: [], place: null, inertia: null };
 }
 
-/** A robot whose links stand in a row along y, one metre apart. */
+/** Returns a robot whose links are in a row along y, one metre apart. */
 function robot(links: LinkScene[]): { drawing: RobotDrawing; frames: FrameStore } {
   const frames = new FrameStore();
   const names = links.map(({ name }) => name);
@@ -52,11 +52,11 @@ function robot(links: LinkScene[]): { drawing: RobotDrawing; frames: FrameStore 
 function draw({ drawing, frames }: ReturnType<typeof robot>, rows = new PropertyRows([])): Record<string, unknown> {
   drawing.style(rows, false);
   drawing.place((each, matrix) => framePose(frames, frames.row(each.frame), matrix));
-  drawing.look(from(5));
-  return drawing.tell() as Record<string, unknown>;
+  drawing.chooseDetail(from(5));
+  return drawing.inspect() as Record<string, unknown>;
 }
 
-/** A camera that looks at the row from so many metres in front of it. */
+/** Returns a camera that looks at the row from this many metres in front of it. */
 function from(distance: number): PerspectiveCamera {
   const camera = new PerspectiveCamera(45, 1, 0.01, 100);
   camera.position.set(distance, 0, 0);
@@ -73,7 +73,7 @@ const ROW = [
 ];
 
 describe("RobotDrawing", () => {
-  it("draws the solid shapes together, where their links are", () => {
+  it("batches solid shapes at the poses of their links", () => {
     const row = robot(ROW);
     expect(draw(row)["drawnTogether"]).toBe(3);
     const box = new Box3();
@@ -85,18 +85,18 @@ describe("RobotDrawing", () => {
     expect(round(box.max)).toEqual([1.1, 2.3, 0.3]);
   });
 
-  it("draws spheres with few corners while they look small", () => {
+  it("draws spheres with few vertices while they look small", () => {
     const row = robot([link("balls", shape({ kind: "sphere", size: [0.3] }), shape({ kind: "sphere", size: [3] }))]);
     const small = (distance: number): unknown => {
-      row.drawing.look(from(distance));
-      return (row.drawing.tell() as Record<string, unknown>)["smallSpheres"];
+      row.drawing.chooseDetail(from(distance));
+      return (row.drawing.inspect() as Record<string, unknown>)["smallSpheres"];
     };
     draw(row);
     expect([2, 20, 90, 20, 0.1].map(small)).toEqual([0, 1, 2, 1, 0]);
     expect(draw(row)["drawnTogether"]).toBe(2);
   });
 
-  it("draws what is seen through, white for want of a transform, or switched off, otherwise or not at all", () => {
+  it("does not batch shapes that are translucent, lack a transform or are switched off", () => {
     const row = robot(ROW);
     const rows = (name: string, value: number | boolean): PropertyRows => {
       return new PropertyRows([new PropertyNode(property({ id: name, name, value }))]);
@@ -108,7 +108,7 @@ describe("RobotDrawing", () => {
     expect(draw(row)["drawnTogether"]).toBe(2);
   });
 
-  it("tells how large what is seen of it is, and without anything to see how far its links reach", () => {
+  it("measures its visible parts, or the extent of its links if nothing is visible", () => {
     const row = robot(ROW);
     draw(row);
     expect(row.drawing.progress).toEqual({ posed: 4, loading: 0 });
@@ -117,31 +117,31 @@ describe("RobotDrawing", () => {
     expect(row.drawing.bounds().max.toArray()).toEqual([0, 3, 0]);
   });
 
-  it("is in place with a link that has visuals, or with any where none has or none is to be seen", () => {
+  it("has a pose with that of a link with visuals, or of any link if none has visuals or none is visible", () => {
     const bare = robot([link("base"), link("tip")]);
-    expect(bare.drawing.isInPlace).toBe(false);
+    expect(bare.drawing.hasPose).toBe(false);
     draw(bare);
-    expect(bare.drawing.isInPlace).toBe(true);
+    expect(bare.drawing.hasPose).toBe(true);
 
     const hidden = robot(ROW);
     draw(hidden, new PropertyRows([new PropertyNode(property({ id: "v", name: "Visual Enabled", value: false }))]));
-    expect(hidden.drawing.isInPlace).toBe(true);
+    expect(hidden.drawing.hasPose).toBe(true);
 
     const { drawing, frames } = robot([link("footprint"), ...ROW]);
     frames.setTable({ type: "frame_table", revision: 2, names: ["footprint"], parents: [-1] });
     frames.setTransforms({ revision: 2, stamp: 0, poses: new Float32Array([0, 0, 0, 0, 0, 0, 1]), ages: new Float32Array(1) });
     draw({ drawing, frames });
     expect(drawing.progress.posed).toBe(1);
-    expect(drawing.isInPlace).toBe(false);
+    expect(drawing.hasPose).toBe(false);
   });
 
-  it("lets rays meet what is drawn together, and cameras see it once", () => {
+  it("is hit by rays in its batches, and is seen by cameras once", () => {
     const row = robot(ROW);
     draw(row);
     row.drawing.root.updateMatrixWorld(true);
     const ray = new Raycaster(new Vector3(5, 0, 0), new Vector3(-1, 0, 0));
     expect(row.drawing.pick(ray)).toBeNull();
-    ray.layers.enable(TOUCHED);
+    ray.layers.enable(PICKABLE);
     const hit = row.drawing.pick(ray);
     expect(hit?.key).toBe("box");
     expect(hit?.point.x).toBeCloseTo(1.1);

@@ -1,15 +1,15 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import { detailRows } from "../src/panels/displays/detail-rows";
-import { displayRows, linkOfKey, linkPath } from "../src/panels/displays/robot-rows";
+import { displayRows, linkOfKey, linkRowPath } from "../src/panels/displays/robot-rows";
 import type { JointScene, Property, ServerMessage } from "../src/protocol";
-import { composed, relative } from "../src/state/pose-numbers";
+import { compose, relativeTo } from "../src/state/pose-numbers";
 import { Session } from "../src/state/session";
 import { formatPoint } from "../src/tree/numbers";
 import type { TreeItem } from "../src/tree/tree-item";
 import { display, property, robot, tree } from "./messages";
 
-// The page's words ask for the language when they are read.
+// The page's texts read the browser's language when they are imported.
 vi.hoisted(() => vi.stubGlobal("localStorage", { getItem: () => "en" }));
 
 const HALF = Math.SQRT1_2;
@@ -52,7 +52,7 @@ function row(group: string, name: string, details: "link" | "joint"): Property {
   return property({ id: `d0/${group}/${name}`, name, kind: "bool", value: true, details, children: extras });
 }
 
-/** A robot of three links in a row: arm, which the root base carries, and hand. */
+/** A robot of three links in a row: the root base, arm, and hand. */
 function show(style: string, open: readonly string[] = []): void {
   const option = (name: string, value: string | boolean): Property =>
     property({ id: `d0/Links/${name}`, name, kind: typeof value === "string" ? "enum" : "bool", value });
@@ -87,7 +87,7 @@ function outline(items: readonly TreeItem[], depth = 0): string[] {
   ]);
 }
 
-/** The rows, without options and what is known of each link. */
+/** Returns the rows without options and details of links. */
 function arranged(): string[] {
   const known = /Show|Position|Orientation|^ *[XYZW]$|Type|Limit|Axis|Style|Expand|All/;
   return outline(displayRows(session.displays.displays[0]!, session, () => undefined)).filter((line) => !known.test(line));
@@ -101,17 +101,17 @@ beforeEach(() => {
 afterEach(() => vi.unstubAllGlobals());
 
 describe("a robot's rows", () => {
-  it("are its links", () => {
+  it("list its links", () => {
     show("Links in Alphabetic Order");
     expect(arranged()).toEqual(["Links", "  arm", "  base", "  hand"]);
   });
 
-  it("are its joints", () => {
+  it("list its joints", () => {
     show("Joints in Alphabetic Order", ["Expand Joint Details"]);
     expect(arranged()).toEqual(["Joints", "  elbow*", "  grip*"]);
   });
 
-  it("are a tree of links", () => {
+  it("form a tree of links", () => {
     show("Tree of links", ["Expand Tree"]);
     expect(arranged()).toEqual([
       "Link Tree",
@@ -124,7 +124,7 @@ describe("a robot's rows", () => {
     ]);
   });
 
-  it("are a tree of links and joints", () => {
+  it("form a tree of links and joints", () => {
     show("Tree of links and joints", ["Expand Link Details"]);
     expect(arranged()).toEqual([
       "Link/Joint Tree",
@@ -141,7 +141,7 @@ describe("a robot's rows", () => {
     ]);
   });
 
-  it("offer to open what there is", () => {
+  it("can be unfolded if they have children", () => {
     const offered = (): string[] =>
       outline(displayRows(session.displays.displays[0]!, session, () => undefined)).filter((line) => /Expand/.test(line));
     show("Links in Alphabetic Order");
@@ -155,14 +155,14 @@ describe("a robot's rows", () => {
   it("are found by their link", () => {
     show("Tree of links and joints");
     const [model] = session.displays.displays;
-    expect(linkPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/base", "d0/Joints/elbow", "d0/Links/arm"]);
+    expect(linkRowPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/base", "d0/Joints/elbow", "d0/Links/arm"]);
     expect(linkOfKey(session, "d0/Links/arm")).toEqual({ display: model, link: "arm" });
     expect(linkOfKey(session, "d0/Links/All Links Enabled")).toBeNull();
     show("Joints in Alphabetic Order");
-    expect(linkPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Joints/elbow"]);
-    expect(linkPath(model!, session, "base")).toBeNull();
+    expect(linkRowPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Joints/elbow"]);
+    expect(linkRowPath(model!, session, "base")).toBeNull();
     show("Links in Alphabetic Order");
-    expect(linkPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/arm"]);
+    expect(linkRowPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/arm"]);
   });
 });
 
@@ -170,7 +170,7 @@ describe("rows of details", () => {
   const values = (items: readonly TreeItem[]): Record<string, unknown> =>
     Object.fromEntries(items.map((item) => [item.name, item.value]));
 
-  it("say where a joint is, and what it is", () => {
+  it("show the position and properties of a joint", () => {
     show("Joints in Alphabetic Order");
     frames({ base: { parent: null, pose: [0, 0, 2, 0, 0, HALF, HALF] } });
     const [model] = session.displays.displays;
@@ -187,7 +187,7 @@ describe("rows of details", () => {
     expect(values(rows[0]!.children!())).toEqual({ X: "0", Y: "1", Z: "2" });
   });
 
-  it("say where a frame is, as seen from its parent too, and follow it", () => {
+  it("show the pose of a frame, also relative to its parent, and follow it", () => {
     const box = property({ id: "d1/Frames/tip", name: "tip", kind: "bool", value: true, details: "frame" });
     receive(tree(display({ id: "d1", properties: [box] })));
     const place = (x: number): void =>
@@ -209,14 +209,14 @@ describe("rows of details", () => {
     expect(rows[1]!.value).toBe("5; 0; 0");
   });
 
-  it("are empty for a frame without a place", () => {
+  it("are empty for a frame without a pose", () => {
     const box = property({ id: "d1/Frames/gone", name: "gone", kind: "bool", value: true, details: "frame" });
     receive(tree(display({ id: "d1", properties: [box] })));
     const [tf] = session.displays.displays;
     expect(Object.values(values(detailRows(tf!.rows.nodes[0]!, tf!, session)))).toEqual(["", "", "", "", ""]);
   });
 
-  it("give a joint's last effort", () => {
+  it("show a joint's last effort", () => {
     const box = property({ id: "d2/Joints/elbow", name: "elbow", kind: "bool", value: true, details: "effort" });
     receive(tree(display({ id: "d2", properties: [box] })));
     const rings = (effort: number, stamp: number): void =>
@@ -243,15 +243,15 @@ describe("rows of details", () => {
 });
 
 describe("poses", () => {
-  it("put together and taken apart are the same", () => {
+  it("are the same after composing and decomposing", () => {
     const a = [1, 2, 3, 0, HALF, 0, HALF] as const;
     const b = [-1, 0.5, 2, HALF, 0, 0, HALF] as const;
-    relative(a, composed(a, b)).forEach((part, i) => expect(part).toBeCloseTo(b[i]!));
+    relativeTo(a, compose(a, b)).forEach((part, i) => expect(part).toBeCloseTo(b[i]!));
   });
 });
 
 describe("a point in one line", () => {
-  it("has five digits for its largest number, and no finer ones for the others", () => {
+  it("has five digits for its largest number, and the same resolution for the others", () => {
     expect(formatPoint([1.5, 0.00002399, 0.3])).toBe("1.5; 0; 0.3");
     expect(formatPoint([0, 0, -20050.26])).toBe("0; 0; -20050");
     expect(formatPoint([0.000123456, 0, -0.00002])).toBe("0.00012346; 0; -0.00002");

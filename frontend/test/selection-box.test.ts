@@ -2,7 +2,7 @@ import { BoxGeometry, Mesh, OrthographicCamera, PerspectiveCamera, SphereGeometr
 import { describe, expect, it } from "vitest";
 import { ScreenBox } from "../src/scene/selection-box";
 
-/** Nothing hides anything. */
+/** A depth map in which nothing is hidden. */
 const open = (): boolean => true;
 const ALL = [new Vector2(-0.95, -0.95), new Vector2(0.95, 0.95)] as const;
 
@@ -21,7 +21,7 @@ function ball(x: number): Mesh {
 }
 
 describe("a rectangle on the screen", () => {
-  it("holds what is seen in it", () => {
+  it("contains the objects that are visible in it", () => {
     const box = new ScreenBox(camera(), ...ALL, open);
     expect(box.hasPoint(0, 0, 0)).toBe(true);
     expect(box.hasPoint(3.5, 0, 0)).toBe(true);
@@ -31,20 +31,20 @@ describe("a rectangle on the screen", () => {
     expect(box.hasObject(ball(6))).toBe(false);
   });
 
-  it("leaves out what is beside it", () => {
+  it("excludes objects next to it", () => {
     const right = new ScreenBox(camera(), new Vector2(0.1, -1), new Vector2(1, 1), open);
     expect(right.hasObject(ball(2))).toBe(true);
     expect(right.hasObject(ball(-2))).toBe(false);
   });
 
-  it("within a face holds the object though none of its corners", () => {
+  it("within a face contains the object, although it contains none of the corners", () => {
     const small = new ScreenBox(camera(), new Vector2(-0.02, -0.02), new Vector2(0.02, 0.02), open);
     const wall = new Mesh(new BoxGeometry(4, 4, 0.1));
     wall.updateMatrixWorld(true);
     expect(small.hasObject(wall)).toBe(true);
   });
 
-  it("leaves out what is hidden", () => {
+  it("excludes hidden objects", () => {
     const seen: number[] = [];
     const box = new ScreenBox(camera(), ...ALL, (x, _, z) => {
       seen.push(z);

@@ -26,7 +26,7 @@ afterEach(() => {
 });
 
 describe("properties", () => {
-  it("are found by their names and changed by their ids", () => {
+  it("are found by their names and changed by their IDs", () => {
     const style = property({
       id: "d0/Line Style",
       name: "Line Style",
@@ -42,14 +42,14 @@ describe("properties", () => {
     expect(rows.number(42, "No", "Such", "Row")).toBe(42);
   });
 
-  it("set by the user are shown at once and told to the server", () => {
+  it("set by the user are shown at once and sent to the server", () => {
     receive(tree(display({ id: "d0", properties: [property({ id: "d0/Alpha", name: "Alpha", value: 0.5 })] })));
     session.setProperty("d0/Alpha", 0.9);
     expect(session.displays.displays[0]!.rows.number(0, "Alpha")).toBe(0.9);
     expect(sent).toEqual([{ type: "set_property", id: "d0/Alpha", value: 0.9 }]);
   });
 
-  it("Enabled is the display's box, not a row", () => {
+  it("do not include Enabled, which is the display's box", () => {
     const enabled = property({ id: "d0/Enabled", name: "Enabled", kind: "bool", value: true });
     receive(tree(display({ id: "d0", properties: [enabled] })));
     const [grid] = session.displays.displays;
@@ -58,7 +58,7 @@ describe("properties", () => {
     expect(grid!.enabled).toBe(false);
   });
 
-  it("survive a new tree in the same display object, so that its drawing goes on", () => {
+  it("survive a new tree in the same display object, so that its drawing continues", () => {
     receive(tree(display({ id: "d0" }), display({ id: "d1" })));
     const [first] = session.displays.displays;
     receive(tree(display({ id: "d0", name: "Floor" })));
@@ -70,7 +70,7 @@ describe("properties", () => {
 describe("the selection", () => {
   const model = display({ id: "d1", cls: "rviz_default_plugins/RobotModel" });
 
-  it("outlives a reload of the robot and ends with its link", () => {
+  it("survives a reload of the robot and ends with its link", () => {
     receive(tree(model), robot("d1", "base_link", "wheel"));
     const link = session.robots.get("d1")!.links[1]!;
     session.selection.select({ display: "d1", link });
@@ -92,7 +92,7 @@ describe("the view", () => {
   const size = { width: 800, height: 600 };
   const box = { min: [-1, -1, 0], max: [1, 1, 2] } as const;
 
-  it("is taken from the server once; a reconnect does not move the user's camera", () => {
+  it("is taken from the server once; a reconnection does not move the user's camera", () => {
     receive(view(1));
     expect(session.view.values).toMatchObject({ Yaw: 1, Distance: 1.7 });
     session.view.update({ Yaw: 2 });
@@ -106,22 +106,22 @@ describe("the view", () => {
     const hello = (run: string, title = "robot.urdf"): ServerMessage => ({ type: "hello", protocol: 1, version: "1", title, run });
     const sizes = (): unknown[] => sent.filter(({ type }) => type === "robot_measured");
 
-    it("keeps the camera, and the program is told anew how large the robot is", () => {
+    it("keeps the camera, and reports the robot's size again", () => {
       receive(hello("first"));
       receive(view(1));
       session.view.update({ Yaw: 2 });
-      session.view.measured(box, 0);
+      session.view.reportSize(box, 0);
       expect(sizes()).toHaveLength(0);
       receive(hello("second"));
       receive(view(1));
       expect(session.view.values["Yaw"]).toBe(2);
       expect(session.view.awaitsSize).toBe(true);
-      session.view.measured(box, 0);
-      session.view.measured(box, 0);
+      session.view.reportSize(box, 0);
+      session.view.reportSize(box, 0);
       expect(sizes()).toHaveLength(1);
     });
 
-    it("is its own where that shows another file", () => {
+    it("is the program's if that shows another file", () => {
       receive(hello("first"));
       receive(view(1));
       session.view.update({ Yaw: 2 });
@@ -138,7 +138,7 @@ describe("the view", () => {
     expect(session.view.values["Yaw"]).toBe(3);
   });
 
-  it("that nobody chose goes where all of the robot is seen, again when more of it comes that is not seen", () => {
+  it("that no user has chosen fits the whole robot, again when more of it becomes visible", () => {
     receive(view(1, 1, true));
     expect(session.view.awaitsFit("")).toBe(false);
     expect(session.view.awaitsFit("2 links")).toBe(true);
@@ -156,19 +156,19 @@ describe("the view", () => {
     expect(session.view.awaitsFit("4 links")).toBe(true);
   });
 
-  it("that nobody chose has the robot measured once, for each configuration", () => {
+  it("that no user has chosen measures the robot once for each configuration", () => {
     const measured = (): unknown[] => sent.filter(({ type }) => type === "robot_measured");
     receive(view(1, 1, true));
-    session.view.measured({ min: [0, 0, 0], max: [2, 3, 6] }, -0.5);
-    session.view.measured({ min: [0, 0, 0], max: [4, 6, 12] }, 0);
+    session.view.reportSize({ min: [0, 0, 0], max: [2, 3, 6] }, -0.5);
+    session.view.reportSize({ min: [0, 0, 0], max: [4, 6, 12] }, 0);
     expect(measured()).toEqual([{ type: "robot_measured", diagonal: 7, ground: -0.5 }]);
     receive(view(1, 2, true));
     session.view.update({ Yaw: 2 });
-    session.view.measured({ min: [0, 0, 0], max: [2, 3, 6] }, 0);
+    session.view.reportSize({ min: [0, 0, 0], max: [2, 3, 6] }, 0);
     expect(measured()).toHaveLength(1);
   });
 
-  it("stays where the user has put it, or the file", () => {
+  it("stays where the user or the file has put it", () => {
     receive(view(1));
     expect(session.view.awaitsFit("3 links")).toBe(false);
     receive(view(1, 2, true));
@@ -181,7 +181,7 @@ describe("the view", () => {
     expect(session.view.awaitsFit("3 links")).toBe(false);
   });
 
-  it("is told to the server when the user moves it, a few times a second", () => {
+  it("is sent to the server when the user moves it, a few times per second", () => {
     receive(view(1));
     for (let i = 0; i < 20; i++) session.view.update({ Yaw: 2 + i / 100 });
     vi.advanceTimersByTime(1000);
@@ -189,7 +189,7 @@ describe("the view", () => {
     expect(sent[0]).toMatchObject({ type: "view_changed", view: { values: { Yaw: 2.19 } } });
   });
 
-  it("does not jump when another frame becomes its target", () => {
+  it("does not jump when its target frame changes", () => {
     receive({ type: "frame_table", revision: 1, names: ["base", "arm"], parents: [-1, 0] });
     session.frames.poses.set([5, 6, 7, 0, 0, 0, 1], 7);
     const before = session.view.camera.position;

@@ -9,8 +9,8 @@ function storage(): { getItem(key: string): string | null; setItem(key: string, 
   return { getItem: (key) => texts.get(key) ?? null, setItem: (key, text) => void texts.set(key, text) };
 }
 
-describe("displays of a page's own", () => {
-  it("are asked for in the page's address", () => {
+describe("own displays of a page", () => {
+  it("are requested in the page's address", () => {
     const own = addressFor("http://localhost:7447/?token=abc", true);
     expect(own).toBe("http://localhost:7447/?token=abc&displays=own");
     expect(hasOwnDisplays(own)).toBe(true);
@@ -18,7 +18,7 @@ describe("displays of a page's own", () => {
     expect(hasOwnDisplays("http://localhost:7447/?displays=shared")).toBe(false);
   });
 
-  it("have a name that stays while the tab does", () => {
+  it("have a name that is stable for the tab", () => {
     const tab = storage();
     const key = ownKey(tab);
     expect(key).toMatch(/^[0-9a-f]{32}$/);
@@ -30,11 +30,11 @@ describe("displays of a page's own", () => {
   });
 });
 
-describe("keys", () => {
+describe("shortcuts", () => {
   const event = (part: Partial<KeyboardEvent>): KeyboardEvent =>
     ({ key: "", code: "", ctrlKey: false, metaKey: false, shiftKey: false, altKey: false, ...part }) as KeyboardEvent;
 
-  it("are taken with exactly what is held", () => {
+  it("match exactly the modifiers that are pressed", () => {
     expect(matches(event({ key: "s", ctrlKey: true }), SHORTCUTS.save)).toBe(true);
     expect(matches(event({ key: "S", ctrlKey: true, shiftKey: true }), SHORTCUTS.save)).toBe(false);
     expect(matches(event({ key: "S", ctrlKey: true, shiftKey: true }), SHORTCUTS.saveAs)).toBe(true);
@@ -44,7 +44,7 @@ describe("keys", () => {
     expect(matches(event({ key: "Delete", ctrlKey: true }), SHORTCUTS.remove)).toBe(false);
   });
 
-  it("are none that browsers keep for themselves", () => {
+  it("do not include those reserved by browsers", () => {
     const taken = ["Ctrl+N", "Ctrl+T", "Ctrl+W", "Ctrl+R", "Ctrl+Shift+N", "Ctrl+Shift+T", "Ctrl+Shift+W", "F5", "Ctrl+D"];
     const ours = Object.values(SHORTCUTS).map(keyText);
     expect(ours.filter((key) => taken.includes(key))).toEqual([]);
@@ -66,7 +66,7 @@ describe("the theme", () => {
     return { theme, root, change };
   }
 
-  it("follows the system until one is chosen, which is remembered", () => {
+  it("follows the system until the user chooses one, which is stored", () => {
     const texts = storage();
     const { theme, root, change } = made(false, texts);
     expect(root.dataset["theme"]).toBe("dark");

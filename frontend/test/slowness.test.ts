@@ -2,7 +2,7 @@ import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import type { Connection } from "../src/connection/connection";
 import type { ServerMessage } from "../src/protocol";
 import { Signal } from "../src/signal";
-import type { Reduced } from "../src/state/slow-line";
+import type { Reduced } from "../src/state/slow-connection";
 import { Slowness } from "../src/state/slowness";
 
 beforeEach(() => {
@@ -24,7 +24,7 @@ function made(pace = { isSlow: false }) {
     line.reduced = displays.map((display) => ({ display, reduction: { kind: "points", step: 2 }, rate: null }));
     line.changed.emit();
   };
-  /** Timers of the page that come so much too late. */
+  /** Delays the page's timers by this time. */
   const pass = (count: number, late: number): void => {
     for (let i = 0; i < count; i++) {
       behind += late;
@@ -35,14 +35,14 @@ function made(pace = { isSlow: false }) {
   return { slowness, reduce, pass, tell };
 }
 
-it("is the line where nobody is late", () => {
+it("is the connection if nothing is late", () => {
   const { slowness, reduce, pass } = made();
   reduce(["cloud"]);
   pass(40, 2);
   expect(slowness.cause).toBe("line");
 });
 
-it("is the page while its timers are late, until they no longer are", () => {
+it("is the page while its timers are late", () => {
   const { slowness, reduce, pass } = made();
   reduce(["cloud"]);
   const changed = vi.fn();
@@ -54,7 +54,7 @@ it("is the page while its timers are late, until they no longer are", () => {
   expect(changed).toHaveBeenCalledTimes(2);
 });
 
-it("is the program where it says so, and the page is not", () => {
+it("is the program if it says so and the page is not slow", () => {
   const { slowness, reduce, pass, tell } = made();
   reduce(["cloud"]);
   tell(true);
@@ -63,7 +63,7 @@ it("is the program where it says so, and the page is not", () => {
   expect(slowness.cause).toBe("page");
 });
 
-it("looks at the page only while it is sent less than all", () => {
+it("checks the page only while it receives reduced data", () => {
   const { reduce } = made();
   expect(vi.getTimerCount()).toBe(0);
   reduce(["cloud"]);

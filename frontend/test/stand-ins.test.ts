@@ -1,7 +1,7 @@
 import { BoxGeometry, BufferGeometry, Matrix4, Mesh, MeshLambertMaterial, Object3D, PerspectiveCamera, SphereGeometry } from "three";
 import { MeshoptSimplifier } from "meshoptimizer/simplifier";
 import { beforeAll, describe, expect, it } from "vitest";
-import { TOUCHED } from "../src/scene/layers";
+import { PICKABLE } from "../src/scene/layers";
 import { standIn, type StandIn, type Triangles } from "../src/scene/meshes/stand-in";
 import type { StandInAnswer, StandInRequest } from "../src/scene/meshes/stand-in-worker";
 import { StandIns, type StandInWorker } from "../src/scene/meshes/stand-ins";
@@ -14,7 +14,7 @@ function triangles(geometry: BufferGeometry): Triangles {
   return { positions: array("position"), normals: array("normal"), index: geometry.index ? Uint32Array.from(geometry.index.array) : null };
 }
 
-/** As STL has it: each triangle by itself, and flat. */
+/** Returns a geometry like that of an STL: separate, flat triangles. */
 function soup(geometry: BufferGeometry): Triangles {
   const apart = geometry.toNonIndexed();
   apart.computeVertexNormals();
@@ -32,7 +32,7 @@ function looking(distance: number): { camera: PerspectiveCamera; height: number 
   return { camera, height: 600 };
 }
 
-/** A worker that answers when it is told to. */
+/** A worker that answers when the test tells it to. */
 function worker(): { worker: StandInWorker; requests: StandInRequest[]; answer: (standIns: StandInAnswer["standIns"]) => void } {
   const requests: StandInRequest[] = [];
   const made: StandInWorker = { onmessage: null, onerror: null, postMessage: (request) => void requests.push(request) };
@@ -54,7 +54,7 @@ describe("a stand-in", () => {
     for (const { error, index } of levels) {
       let off = 0;
       for (let i = 0; i < index.length; i += 3) {
-        // The middle of a flat triangle is the farthest from the sphere.
+        // The centre of a flat triangle is the farthest from the sphere.
         const middle = [0, 1, 2].map((axis) => [0, 1, 2].reduce((sum, k) => sum + positions[3 * index[i + k]! + axis]! / 3, 0));
         off = Math.max(off, 1 - Math.hypot(...middle));
       }
@@ -62,7 +62,7 @@ describe("a stand-in", () => {
     }
   });
 
-  it("joins the corners of triangles that are written by themselves, but not over edges", () => {
+  it("merges the vertices of separate triangles, but not across edges", () => {
     const box = made(soup(new BoxGeometry(1, 1, 1)));
     expect(box.positions.length / 3).toBe(24);
     expect(box.levels[0]?.index.length).toBe(36);
@@ -70,15 +70,15 @@ describe("a stand-in", () => {
     expect(round.positions.length / 3).toBeLessThan(25 * 17);
   });
 
-  it("is nothing for a mesh without an area", () => {
-    const { levels, ball } = made({ positions: new Float32Array(9), normals: new Float32Array(9), index: null });
+  it("does not exist for a mesh without area", () => {
+    const { levels, sphere } = made({ positions: new Float32Array(9), normals: new Float32Array(9), index: null });
     expect(levels).toEqual([{ error: 0, index: new Uint32Array(0) }]);
-    expect(ball[3]).toBe(0);
+    expect(sphere[3]).toBe(0);
   });
 });
 
 describe("stand-ins of meshes", () => {
-  it("are asked for once, one for each group", () => {
+  it("are requested once, one for each group", () => {
     const { worker: made, requests, answer } = worker();
     const standIns = new StandIns(() => made);
     const geometry = new BoxGeometry(1, 1, 1);
@@ -92,7 +92,7 @@ describe("stand-ins of meshes", () => {
     expect(standIns.of(geometry)).toBe(found);
   });
 
-  it("are none where the worker does not run", () => {
+  it("do not exist if the worker does not run", () => {
     const { worker: made } = worker();
     const standIns = new StandIns(() => made);
     const geometry = new SphereGeometry();
@@ -105,19 +105,19 @@ describe("stand-ins of meshes", () => {
 describe("moving meshes", () => {
   const ball = (): MovingPiece => ({ standIn: made(triangles(new SphereGeometry(1, 48, 32))), matrix: new Matrix4(), color: 0xff0000 });
 
-  it("are the coarser the farther away they are, and nothing where no one looks", () => {
+  it("are coarser at a greater distance, and absent outside the view", () => {
     const piece = ball();
     const levels = [2, 5, 50, 500].map((distance) => levelsFor([piece], looking(distance))[0]);
     expect(levels).toEqual([...levels].sort((a, b) => a! - b!));
     expect(new Set(levels).size).toBeGreaterThan(2);
     expect(levelsFor([{ ...piece, matrix: new Matrix4().makeTranslation(100, 0, 0) }], looking(5))).toEqual([null]);
-    // From within it nothing is left out.
+    // From inside nothing is left out.
     expect(levelsFor([piece], looking(0.5))).toEqual([0]);
-    // As large as a hundred from a hundred times as far.
+    // A hundred times as large from a hundred times the distance looks the same.
     expect(levelsFor([{ ...piece, matrix: new Matrix4().makeScale(100, 100, 100) }], looking(500))).toEqual(levelsFor([piece], looking(5)));
   });
 
-  it("stand in for the meshes until the frame is drawn", () => {
+  it("replace the meshes until the frame is drawn", () => {
     const parent = new Object3D();
     const mesh = new Mesh(new SphereGeometry(), new MeshLambertMaterial());
     const moving = new MovingMeshes(parent);
@@ -125,7 +125,7 @@ describe("moving meshes", () => {
     expect(moving.drawn.pieces).toBe(2);
     expect(moving.drawn.triangles).toBeLessThan(48 * 32);
     expect(mesh.layers.isEnabled(0)).toBe(false);
-    expect(mesh.layers.isEnabled(TOUCHED)).toBe(true);
+    expect(mesh.layers.isEnabled(PICKABLE)).toBe(true);
     expect(parent.children).toHaveLength(1);
     moving.end();
     expect(mesh.layers.isEnabled(0)).toBe(true);

@@ -5,7 +5,7 @@ import { zh } from "../src/strings/zh";
 
 type Words = Readonly<Record<string, unknown>>;
 
-/** The path of every word, with what it is. */
+/** Returns the path and type of every text. */
 function* words(part: Words, path = ""): Generator<[string, unknown]> {
   for (const [name, value] of Object.entries(part)) {
     if (typeof value === "object" && value !== null && !Array.isArray(value)) yield* words(value as Words, `${path}${name}.`);
@@ -16,26 +16,26 @@ function* words(part: Words, path = ""): Generator<[string, unknown]> {
 const english = new Map(words(en));
 const chinese = new Map(words(zh));
 
-/** RViz's own names of tools and of values are English; only other languages have words for them. */
+/** RViz's names of tools and of values, which need no translation in English. */
 const OTHERS_ONLY = ["tools.names.", "values."];
 
-it("the languages have the same words", () => {
+it("the languages have the same texts", () => {
   const common = (paths: Iterable<string>): string[] => [...paths].filter((path) => !OTHERS_ONLY.some((each) => path.startsWith(each))).sort();
   expect(common(chinese.keys())).toEqual(common(english.keys()));
   for (const [path, word] of english) expect(typeof chinese.get(path), path).toBe(typeof word);
 });
 
-it("no word is empty, and Chinese ones are Chinese", () => {
+it("no text is empty, and Chinese ones are Chinese", () => {
   const latin: string[] = [];
   for (const [path, word] of chinese) {
     if (typeof word !== "string") continue;
     if (english.get(path) !== "") expect(word.trim(), path).not.toBe("");
     if (word === english.get(path) && /[a-z]{4}/.test(word)) latin.push(path);
   }
-  // What RViz and ROS call by an English name in any language.
+  // Names of RViz and ROS that are English in any language.
   expect(latin.length).toBeLessThan(25);
 });
 
-it("every display with an icon is described", () => {
+it("every display with an icon has a description", () => {
   expect(Object.keys(en.displays.about).sort()).toEqual(Object.keys(DISPLAY_PATHS).sort());
 });

@@ -10,11 +10,11 @@ describe("the studio", () => {
     return { lamp, ground };
   }
 
-  it("has its ground below what stands in it, and shadows as large as that", () => {
+  it("has a ground below the objects, and shadows of their size", () => {
     for (const size of [0.01, 1, 100]) {
       const studio = new StudioLight();
       const { lamp, ground } = parts(studio);
-      studio.shineOn(new Box3(new Vector3(0, 0, 0), new Vector3(size, size, size)), -size);
+      studio.update(new Box3(new Vector3(0, 0, 0), new Vector3(size, size, size)), -size);
       expect(ground.position.z).toBe(-size);
       expect(ground.visible).toBe(true);
       const { near, far, right } = lamp.shadow.camera;
@@ -26,15 +26,15 @@ describe("the studio", () => {
     }
   });
 
-  it("gives a robot's shadow softer edges than that of a world has", () => {
+  it("gives a robot's shadow softer edges than a world's", () => {
     const sun = new DirectionalLight();
     castShadows(sun);
     expect(parts(new StudioLight()).lamp.shadow.radius).toBeGreaterThan(2 * sun.shadow.radius);
   });
 
-  it("has no ground while nothing stands in it", () => {
+  it("has no ground while it is empty", () => {
     const studio = new StudioLight();
-    studio.shineOn(new Box3(), 0);
+    studio.update(new Box3(), 0);
     expect(parts(studio).ground.visible).toBe(false);
   });
 });

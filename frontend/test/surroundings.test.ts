@@ -6,7 +6,7 @@ const NONE = { background: null, daylight: null, fog: null };
 const FOG = { color: [1, 1, 1], start: 2, end: 9, density: null };
 
 describe("sky and fog", () => {
-  it("are there for worlds that have them, and made once", () => {
+  it("exist for worlds that have them, and are created once", () => {
     const scene = new Scene();
     const around = new SkyAndFog(scene);
     around.set({ ...NONE, daylight: 1, fog: FOG }, false);
@@ -24,13 +24,13 @@ describe("sky and fog", () => {
     expect([scene.background, scene.fog]).toEqual([null, null]);
   });
 
-  it("are of one colour where the camera sees in parallel", () => {
+  it("have one colour for an orthographic camera", () => {
     const scene = new Scene();
     new SkyAndFog(scene).set({ ...NONE, daylight: 1 }, true);
     expect(scene.background).toBeInstanceOf(Color);
   });
 
-  it("are a backdrop in a studio, of its colour at the zenith and brighter at the horizon", () => {
+  it("are a backdrop in a studio, with its colour at the zenith and a brighter horizon", () => {
     const scene = new Scene();
     const around = new SkyAndFog(scene);
     around.set({ ...NONE, backdrop: "#303030" }, false);

@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { agoText, clockText, densities, extentText, momentText, passedText } from "../src/panels/timeline/timeline-text";
+import { agoText, clockText, densities, extentText, momentText, elapsedText } from "../src/panels/timeline/timeline-text";
 import type { PageMessage, Playhead } from "../src/protocol";
 import { TimelineState } from "../src/state/timeline";
 
@@ -22,7 +22,7 @@ describe("the timeline", () => {
     connection.message.emit(playhead());
   });
 
-  it("is where the user drags it, and asks for one time after the other, the newest only", () => {
+  it("moves to where the user drags it, and requests one time after another, only the newest", () => {
     for (const position of [102, 103, 104]) timeline.seek(position);
     expect(timeline.position).toBe(104);
     expect(sent).toEqual([{ type: "seek_time", position: 102 }]);
@@ -42,7 +42,7 @@ describe("the timeline", () => {
     expect(sent).toEqual([{ type: "seek_time", position: 110 }]);
   });
 
-  it("tells what has changed apart from time that passes", () => {
+  it("reports changes separately from time that passes", () => {
     const told: string[] = [];
     timeline.changed.on(() => told.push("changed"));
     timeline.moved.on(() => told.push("moved"));
@@ -52,7 +52,7 @@ describe("the timeline", () => {
     expect(told).toEqual(["changed", "moved", "changed"]);
   });
 
-  it("is at the end of the last minutes while the present is shown, however these move on", () => {
+  it("stays at the end of the history while live", () => {
     connection.message.emit({ type: "timeline", name: "", start: 100, end: 110, topics: [], live: true });
     connection.message.emit(playhead({ live: true }));
     connection.message.emit({ type: "history_extent", start: 105, end: 120, size: 5e6, most: 1e7 });
@@ -68,21 +68,21 @@ describe("the timeline", () => {
     expect(sent).toEqual([{ type: "play", playing: false }, { type: "go_live" }]);
   });
 
-  it("is gone with a program that has none", () => {
+  it("disappears with a program that has none", () => {
     connection.message.emit({ type: "hello", protocol: 1, version: "", title: "", run: "1" });
     expect(timeline.timeline).toBeNull();
   });
 });
 
-describe("what the timeline says", () => {
-  it("times as minutes and seconds", () => {
-    expect(passedText(7.256, 90)).toBe("0:07.256 / 1:30");
-    expect(passedText(59.9999, 3725)).toBe("1:00.000 / 1:02:05");
-    expect(passedText(1, 2.5)).toBe("0:01.000 / 0:02.500");
+describe("texts of the timeline", () => {
+  it("show times as minutes and seconds", () => {
+    expect(elapsedText(7.256, 90)).toBe("0:07.256 / 1:30");
+    expect(elapsedText(59.9999, 3725)).toBe("1:00.000 / 1:02:05");
+    expect(elapsedText(1, 2.5)).toBe("0:01.000 / 0:02.500");
     expect(clockText(1_700_000_000.25)).toContain(".250 (1700000000.250)");
   });
 
-  it("how dense messages are, in relation to the densest part of each topic", () => {
+  it("show the density of messages relative to the densest part of each topic", () => {
     const topic = (name: string, counts: number[]) => ({ name, kind: "", count: counts.reduce((a, b) => a + b, 0), counts });
     const rows = densities([topic("/a", [1, 0]), topic("/b", [2, 4]), topic("/c", [])]);
     expect(rows.map((row) => row.map((each) => Math.round(each * 100)))).toEqual([[34, 60], [60, 0]]);

@@ -24,7 +24,7 @@ beforeEach(() => {
 });
 
 describe("the tools", () => {
-  it("begin with the first that is known, and go back to it", () => {
+  it("start with the first known tool, and return to it", () => {
     const tools = new ToolsState(connection);
     receive({ type: "tools", tools: [tool("Else", { supported: false }), tool("Interact"), tool("Measure")], classes: [] });
     expect(tools.current?.id).toBe("Interact");
@@ -37,7 +37,7 @@ describe("the tools", () => {
     expect(tools.current?.id).toBe("Interact");
   });
 
-  it("keep the one in hand while the list changes, as long as it is there", () => {
+  it("keep the active tool while the list changes, as long as it exists", () => {
     const tools = new ToolsState(connection);
     receive({ type: "tools", tools: [tool("Interact"), tool("Measure")], classes: [] });
     tools.choose(tools.tools[1]!);
@@ -47,7 +47,7 @@ describe("the tools", () => {
     expect(tools.current?.id).toBe("Interact");
   });
 
-  it("show a setting at once and tell it to the server", () => {
+  it("show a setting at once and send it to the server", () => {
     const tools = new ToolsState(connection);
     const click = property({ id: "t/Single click", name: "Single click", kind: "bool", value: true });
     receive({ type: "tools", tools: [tool("t", { properties: [click] })], classes: [] });
@@ -60,7 +60,7 @@ describe("the tools", () => {
 });
 
 describe("the clocks", () => {
-  it("go on by themselves while they run, and only then", () => {
+  it("advance by themselves while they run, and only then", () => {
     let now = 1000;
     const time = new TimeControlState(connection, () => now);
     expect(time.times()).toBeNull();
@@ -73,7 +73,7 @@ describe("the clocks", () => {
     expect(time.times()).toMatchObject({ ros: 50, wall: 1e9 + 1.5 });
   });
 
-  it("are asked for again after the connection was lost", () => {
+  it("are requested again after the connection was lost", () => {
     const time = new TimeControlState(connection);
     time.watch(true);
     time.watch(true);
@@ -86,7 +86,7 @@ describe("the clocks", () => {
 });
 
 describe("the selection", () => {
-  it("adds, takes away, and tells the first link among all that is selected", () => {
+  it("adds, removes, and reports the first selected link", () => {
     const scene = robot("d1", "base", "tip");
     const selection = new SelectionState(new Map([["d1", scene]]));
     const changes = vi.fn();
@@ -100,7 +100,7 @@ describe("the selection", () => {
     expect(changes).toHaveBeenCalledTimes(2);
     selection.pick([{ display: "d0", key: "7" }], "remove");
     expect(selection.items).toEqual([{ display: "d1", key: "tip" }]);
-    selection.drop(() => false);
+    selection.retain(() => false);
     expect(selection.selected).toBeNull();
   });
 });

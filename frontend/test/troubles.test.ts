@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { StatusRow } from "../src/protocol";
-import { DisplaysState, troublesOf } from "../src/state/displays";
+import { DisplaysState, problemsOf } from "../src/state/displays";
 import { display, tree } from "./messages";
 
 const ROWS: StatusRow[] = [
@@ -9,21 +9,21 @@ const ROWS: StatusRow[] = [
   { name: "Transform", level: "error", text: "Could not transform" },
 ];
 
-describe("What is wrong with a display", () => {
-  it("is what of its status is no ok, errors first", () => {
-    expect(troublesOf(ROWS).map((row) => row.name)).toEqual(["Transform", "Topic"]);
-    expect(troublesOf([])).toEqual([]);
+describe("the problems of a display", () => {
+  it("are its status rows that are not ok, errors first", () => {
+    expect(problemsOf(ROWS).map((row) => row.name)).toEqual(["Transform", "Topic"]);
+    expect(problemsOf([])).toEqual([]);
   });
 
-  it("is counted where it is an error, and the display is on", () => {
+  it("are counted if they are errors and the display is enabled", () => {
     const displays = new DisplaysState();
     const warned = ROWS.slice(0, 2);
     displays.setTree(tree(display({ id: "a", enabled: true, status: ROWS }), display({ id: "b", enabled: true, status: warned }), display({ id: "c", enabled: false, status: ROWS })));
-    expect(displays.failing).toBe(1);
+    expect(displays.failingCount).toBe(1);
     displays.setStatus("global", "error", ROWS);
     displays.setStatus("b", "error", ROWS);
-    expect(displays.failing).toBe(3);
+    expect(displays.failingCount).toBe(3);
     displays.setStatus("a", "ok", []);
-    expect(displays.failing).toBe(2);
+    expect(displays.failingCount).toBe(2);
   });
 });

@@ -27,7 +27,7 @@ describe("a video", () => {
     vi.unstubAllGlobals();
   });
 
-  it("has frames of a scene that stands still, which is drawn ten times a second while it is recorded", async () => {
+  it("has frames of a still scene, which is drawn ten times per second while it is recorded", async () => {
     let drawn = 0;
     const videos: Blob[] = [];
     const recorder = new VideoRecorder(canvas, () => drawn++, (video) => videos.push(video));

@@ -32,7 +32,7 @@ function forward({ back }: Camera): Vector {
   return [-back[0], -back[1], -back[2]];
 }
 
-/** Where a point is seen: right and up from the middle, per metre of depth. */
+/** Returns the position of a point on the screen: right and up from the centre, per metre of depth. */
 function seen(camera: Camera, point: Vector): [number, number] {
   const off = point.map((value, i) => value - (camera.position[i] ?? 0));
   const along = (axis: Vector): number => axis.reduce((sum, value, i) => sum + value * (off[i] ?? 0), 0);
@@ -41,7 +41,7 @@ function seen(camera: Camera, point: Vector): [number, number] {
 }
 
 describe("every view", () => {
-  it("has right-handed axes of length one", () => {
+  it("has right-handed unit axes", () => {
     for (const [name, values] of [["Orbit", FOCUSED], ["XYOrbit", FOCUSED], ["FPS", { Yaw: 1, Pitch: -0.4 }], ["TopDownOrtho", { Angle: 0.7 }]] as const) {
       const { right, up, back } = view(name).camera(values);
       for (const axis of [right, up, back]) expect(Math.hypot(...axis)).toBeCloseTo(1);
@@ -49,7 +49,7 @@ describe("every view", () => {
     }
   });
 
-  it("changes nothing while no button is held", () => {
+  it("changes nothing while no button is pressed", () => {
     for (const name of ["Orbit", "XYOrbit", "FPS", "TopDownOrtho"]) {
       for (const shift of [false, true]) {
         expect(view(name).drag(FOCUSED, dragged({ dx: 10, dy: 10, shift })), name).toEqual({});
@@ -59,7 +59,7 @@ describe("every view", () => {
 });
 
 describe("Orbit", () => {
-  it("stands where RViz's formula says, and upside down with Invert Z", () => {
+  it("has the pose of RViz's formula, and is upside down with Invert Z", () => {
     const [x, y, z] = ORBIT.camera(FOCUSED).position;
     close([x, y, z], [1 + 2 * Math.cos(5.5) * Math.cos(0.33), 2 + 2 * Math.sin(5.5) * Math.cos(0.33), 3 + 2 * Math.sin(0.33)]);
     const inverted = ORBIT.camera({ ...FOCUSED, "Invert Z Axis": true });
@@ -67,7 +67,7 @@ describe("Orbit", () => {
     expect(inverted.up[2]).toBeLessThan(0);
   });
 
-  it("rotates 0.005 rad a pixel, wraps the yaw and stops the pitch below the pole", () => {
+  it("rotates 0.005 rad per pixel, wraps the yaw and stops the pitch before the pole", () => {
     const rotated = ORBIT.drag(FOCUSED, dragged({ left: true, dx: 10, dy: 4 }));
     close([Number(rotated["Yaw"]), Number(rotated["Pitch"])], [5.45, 0.35]);
     expect(ORBIT.drag({ ...FOCUSED, Yaw: 0.01 }, dragged({ left: true, dx: 4 }))["Yaw"]).toBeCloseTo(2 * Math.PI - 0.01);
@@ -83,7 +83,7 @@ describe("Orbit", () => {
     expect(ORBIT.drag(FOCUSED, dragged({ left: true, shift: true, dy: SIZE.height }))).toEqual(moved);
   });
 
-  it("zooms 12 % a notch, and a hundredth of the distance a pixel with the right button", () => {
+  it("zooms 12 % per notch, and a hundredth of the distance per pixel with the right button", () => {
     expect(ORBIT.wheel(FOCUSED, 120, false)["Distance"]).toBeCloseTo(2 * 0.88);
     expect(ORBIT.drag(FOCUSED, dragged({ right: true, dy: 10 }))["Distance"]).toBeCloseTo(2 * 1.1);
     expect(ORBIT.wheel(FOCUSED, 1e6, false)["Distance"]).toBeGreaterThan(0);
@@ -98,7 +98,7 @@ describe("Orbit", () => {
     expect(moved["Distance"]).toBeUndefined();
   });
 
-  it("looks at a point from where it is", () => {
+  it("looks at a point without moving", () => {
     const after = ORBIT.camera({ ...FOCUSED, ...ORBIT.lookAt(FOCUSED, [0, 0, 1]) });
     close(after.position, ORBIT.camera(FOCUSED).position);
     close(seen(after, [0, 0, 1]), [0, 0]);
@@ -113,7 +113,7 @@ describe("XYOrbit", () => {
     close(ground.position, orbit.position.map((each, i) => each + 2 * (orbit.up[i] ?? 0)));
   });
 
-  it("keeps the ground under the pointer, a metre at most in one step", () => {
+  it("keeps the ground under the pointer, at most one metre per step", () => {
     const drag = dragged({ middle: true, dx: 12, dy: -7 });
     const before = onGround(rayThrough(GROUND.camera(values), drag.x, drag.y, SIZE));
     const after = { ...values, ...GROUND.drag(values, drag) };
@@ -123,7 +123,7 @@ describe("XYOrbit", () => {
     expect(Math.hypot(Number(far["Focal Point/X"]) - 1, Number(far["Focal Point/Y"]) - 2)).toBeLessThanOrEqual(1 + 1e-9);
   });
 
-  it("zooms with the wheel and the right button, with Shift too", () => {
+  it("zooms with the wheel and the right button, also with Shift", () => {
     expect(GROUND.wheel(values, 120, true)["Distance"]).toBeCloseTo(8.8);
     expect(GROUND.drag(values, dragged({ right: true, shift: true, dy: 10 }))["Distance"]).toBeCloseTo(11);
   });
@@ -134,12 +134,12 @@ describe("XYOrbit", () => {
 });
 
 describe("FPS", () => {
-  it("looks along yaw, tipped down by pitch", () => {
+  it("looks along yaw, tilted down by pitch", () => {
     close(forward(FLY.camera({ Yaw: 0, Pitch: 0 })), [1, 0, 0]);
     close(forward(FLY.camera({ Yaw: Math.PI / 2, Pitch: 0.5 })), [0, Math.cos(0.5), -Math.sin(0.5)]);
   });
 
-  it("turns, moves across, and flies ahead", () => {
+  it("rotates, moves sideways, and flies forward", () => {
     const values: ViewValues = { Yaw: 1, Pitch: 0, "Position/X": 0, "Position/Y": 0, "Position/Z": 1 };
     const turned = FLY.drag(values, dragged({ left: true, dx: 10, dy: 10 }));
     close([Number(turned["Yaw"]), Number(turned["Pitch"])], [0.95, 0.05]);
@@ -151,7 +151,7 @@ describe("FPS", () => {
     expect(FLY.drag(values, dragged({ right: true, dy: 10 }))["Position/Z"]).toBeCloseTo(1);
   });
 
-  it("begins above and looks at the origin", () => {
+  it("starts above and looks at the origin", () => {
     const camera = FLY.camera(FLY.zero());
     close(camera.position, [5, 5, 10]);
     close(seen(camera, [0, 0, 0]), [0, 0]);
@@ -159,7 +159,7 @@ describe("FPS", () => {
 });
 
 describe("TopDownOrtho", () => {
-  it("with a negative scale is turned by half a turn, and is dragged and zoomed likewise", () => {
+  it("with a negative scale is rotated by half a turn, and is dragged and zoomed accordingly", () => {
     const values = { Scale: -80, Angle: 0 };
     const { right, up, scale } = MAP.camera(values);
     close([...right, ...up, scale ?? 0], [-1, 0, 0, 0, -1, 0, 80]);
@@ -177,14 +177,14 @@ describe("TopDownOrtho", () => {
     expect(MAP.wheel(values, 120, false)["Scale"]).toBeCloseTo(56);
   });
 
-  it("sees the ground where a pixel is", () => {
+  it("maps a pixel to the ground", () => {
     const camera = MAP.camera({ Scale: 100, Angle: 0, X: 1, Y: 2 });
     close(onGround(rayThrough(camera, 500, 200, SIZE)) ?? [], [2, 3, 0]);
   });
 });
 
-describe("another class of view", () => {
-  it("FPS keeps eye and direction of an Orbit, and back", () => {
+describe("changing the class of a view", () => {
+  it("to FPS keeps position and direction of an Orbit, and back", () => {
     const orbit = ORBIT.camera(FOCUSED);
     const fly = FLY.camera(FLY.mimic(look("Orbit", FOCUSED)));
     close(fly.position, orbit.position);
@@ -194,12 +194,12 @@ describe("another class of view", () => {
     close(back.back, orbit.back);
   });
 
-  it("Orbit turns about a point as far ahead as the origin is away", () => {
+  it("to Orbit rotates about a point at the distance of the origin", () => {
     const values: ViewValues = { Yaw: 0, Pitch: 0, "Position/X": 3, "Position/Y": 0, "Position/Z": 4 };
     expect(ORBIT.mimic(look("FPS", values))).toMatchObject({ Distance: 5, "Focal Point/X": 8, "Focal Point/Z": 4 });
   });
 
-  it("XYOrbit keeps the view where the camera sees the ground", () => {
+  it("to XYOrbit keeps the view if the camera sees the ground", () => {
     const values: ViewValues = { Yaw: 0.3, Pitch: 0.7, "Position/X": 3, "Position/Y": 1, "Position/Z": 4 };
     const fly = FLY.camera(values);
     const mimicked = GROUND.mimic(look("FPS", values));
@@ -208,16 +208,16 @@ describe("another class of view", () => {
     expect(mimicked["Focal Point/Z"]).toBeCloseTo(0);
   });
 
-  it("XYOrbit begins anew where the camera looks up", () => {
+  it("to XYOrbit starts over if the camera looks up", () => {
     expect(GROUND.mimic(look("FPS", { Pitch: -0.5, "Position/Z": 1 }))).toEqual(GROUND.zero());
   });
 
-  it("TopDownOrtho shows the focal point, or what is below the camera", () => {
+  it("to TopDownOrtho shows the focal point, or the point below the camera", () => {
     expect(MAP.mimic(look("Orbit", FOCUSED))).toEqual({ X: 1, Y: 2 });
     expect(MAP.mimic(look("FPS", { "Position/X": 7, "Position/Y": 8 }))).toEqual({ X: 7, Y: 8 });
   });
 
-  it("Orbit after TopDownOrtho looks down from 100 m with the same side up", () => {
+  it("from TopDownOrtho to Orbit looks down from 100 m with the same side up", () => {
     const values = ORBIT.mimic(look("TopDownOrtho", { X: 1, Y: 2, Angle: 0 }));
     expect(values["Distance"]).toBeCloseTo(100);
     expect(ORBIT.camera(values).up[1]).toBeGreaterThan(0.99);
@@ -225,7 +225,7 @@ describe("another class of view", () => {
 });
 
 describe("a fitted view", () => {
-  /** How far from the middle of the canvas the corners of a box are seen: 1 is at its edge, right and up. */
+  /** Returns the distances of a box's corners from the centre of the canvas, right and up; 1 is the edge. */
   function reach(values: ViewValues, min: Vector, max: Vector, { width, height }: typeof SIZE): [number, number] {
     const camera = ORBIT.camera(values);
     const edge = Math.tan(FIELD_OF_VIEW / 2);
@@ -237,7 +237,7 @@ describe("a fitted view", () => {
     return [(most(0) / edge) * (height / width), most(1) / edge];
   }
 
-  it("shows all of a box of any size and shape, from any side, in any window, with some room around it", () => {
+  it("shows the whole of a box of any size and shape, from any side, in any window, with a margin", () => {
     for (const size of [0.05, 1, 20]) {
       for (const edges of [[1, 1, 1], [0.1, 0.1, 1], [1, 0.2, 0.01]] as Vector[]) {
         for (const canvas of [SIZE, { width: 300, height: 900 }, { width: 1600, height: 200 }]) {
@@ -253,7 +253,7 @@ describe("a fitted view", () => {
     }
   });
 
-  it("keeps its distance from what is a single point", () => {
+  it("keeps its distance from a single point", () => {
     expect(ORBIT.fit(FOCUSED, { min: [1, 1, 1], max: [1, 1, 1] }, SIZE)).toEqual({
       "Focal Point/X": 1,
       "Focal Point/Y": 1,
@@ -261,7 +261,7 @@ describe("a fitted view", () => {
     });
   });
 
-  it("shows all of a box in every type of view", () => {
+  it("shows the whole of a box in every type of view", () => {
     const box = { min: [3, -1, 2], max: [3.4, -0.4, 3] } as const;
     for (const name of ["FPS", "XYOrbit", "ThirdPersonFollower"]) {
       const start = { Yaw: 1, Pitch: 0.6, Distance: 7 };
@@ -275,7 +275,7 @@ describe("a fitted view", () => {
     expect(MAP.fit({ Scale: 10, Angle: 0 }, box, SIZE)).toEqual({ X: 3.2, Y: -0.7, Scale: expect.closeTo(600 / 0.6 / 1.2) as number });
   });
 
-  it("does not cut off what is small, and leaves the near clip distance alone before what is not", () => {
+  it("does not clip small objects, and keeps the near clip distance for others", () => {
     const ant = { min: [0, 0, 0], max: [0.01, 0.004, 0.003] } as const;
     const start = { ...FOCUSED, "Near Clip Distance": 0.01 };
     const near = Number(ORBIT.fit(start, ant, SIZE)["Near Clip Distance"]);
@@ -284,7 +284,7 @@ describe("a fitted view", () => {
     expect(ORBIT.fit(start, { min: [0, 0, 0], max: [1, 1, 1] }, SIZE)).not.toHaveProperty("Near Clip Distance");
   });
 
-  it("looks from a frame that moves", () => {
+  it("looks from a moving frame", () => {
     const { min, max } = spanInTarget({ min: [1, 2, 0], max: [3, 3, 1] }, { position: [1, 2, 0], yaw: Math.PI / 2 });
     close(min, [0, -2, 0]);
     close(max, [1, 0, 1]);

@@ -2,7 +2,7 @@ import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import { Speaker } from "../src/state/voice/speaker";
 import type { TextStorage } from "../src/storage";
 
-/** Voices of a browser, which keeps what they are to say. */
+/** Voices of a browser, which record what they should say. */
 class Voices extends EventTarget {
   readonly spoken: [text: string, lang: string, voice: string][] = [];
   hushed = 0;
@@ -21,7 +21,7 @@ class Voices extends EventTarget {
     this.hushed += 1;
   }
 
-  /** Voices come some time after the page. */
+  /** Voices arrive some time after the page has loaded. */
   come(...voices: [name: string, lang: string][]): void {
     this.listed = voices.map(([name, lang]) => ({ name, lang, voiceURI: name, default: false, localService: true }));
     this.dispatchEvent(new Event("voiceschanged"));
@@ -52,7 +52,7 @@ afterEach(() => {
   vi.unstubAllGlobals();
 });
 
-it("says nothing until it is asked to, and stops when it is not any more", () => {
+it("is silent until it is switched on, and stops when it is switched off", () => {
   const speaker = new Speaker(storage);
   speaker.speak("on my way");
   expect(voices.spoken).toEqual([]);
@@ -64,14 +64,14 @@ it("says nothing until it is asked to, and stops when it is not any more", () =>
   expect(voices.hushed).toBe(1);
 });
 
-it("leaves the voice to the browser, but tells it that a text is Chinese", () => {
+it("leaves the voice to the browser, but marks Chinese texts as Chinese", () => {
   const speaker = new Speaker(storage);
   speaker.configure({ on: true });
   speaker.speak("我这就去");
   expect(voices.spoken).toEqual([["我这就去", "zh-CN", ""]]);
 });
 
-it("lists the user's languages first, tells when voices come, and speaks with the chosen one, also next time", () => {
+it("lists the user's languages first, reports when voices arrive, and uses the chosen one, also next time", () => {
   const speaker = new Speaker(storage);
   let told = 0;
   speaker.changed.on(() => (told += 1));
@@ -83,7 +83,7 @@ it("lists the user's languages first, tells when voices come, and speaks with th
   expect(voices.spoken).toEqual([["ich komme", "de-DE", "Hans"]]);
 });
 
-it("takes a voice that is gone, or settings that are none, for no choice", () => {
+it("ignores a missing voice and invalid settings", () => {
   kept.set("linkwright.speaker.1", "{");
   const speaker = new Speaker(storage);
   expect(speaker.settings).toEqual({ on: false, voice: "" });
@@ -92,7 +92,7 @@ it("takes a voice that is gone, or settings that are none, for no choice", () =>
   expect(voices.spoken).toEqual([["here", "", ""]]);
 });
 
-it("is silent where a browser cannot speak", () => {
+it("is silent if the browser cannot speak", () => {
   vi.stubGlobal("speechSynthesis", undefined);
   const speaker = new Speaker(storage);
   speaker.configure({ on: true });

@@ -5,7 +5,7 @@ import type { PageMessage } from "../src/protocol";
 import { GapFinder } from "../src/state/voice/gaps";
 import { meterPart } from "../src/state/voice/level";
 import { Microphone, type OpenCapture } from "../src/state/voice/microphone";
-import { pcm, Resampler } from "../src/state/voice/resampler";
+import { toPcm, Resampler } from "../src/state/voice/resampler";
 import { soundFrame, VoiceState } from "../src/state/voice/voice";
 import { WordsState } from "../src/state/voice/words";
 
@@ -18,7 +18,7 @@ describe("resampling", () => {
   const through = (samples: Float32Array, rate: number): Float32Array => {
     const resampler = new Resampler(rate, 16_000);
     const parts: number[] = [];
-    for (let at = 0; at < samples.length; at += 128) parts.push(...resampler.take(samples.subarray(at, at + 128)));
+    for (let at = 0; at < samples.length; at += 128) parts.push(...resampler.add(samples.subarray(at, at + 128)));
     return Float32Array.from(parts);
   };
 
@@ -30,17 +30,17 @@ describe("resampling", () => {
     expect(worst).toBeLessThan(0.02);
   });
 
-  it("what the new rate cannot carry is taken away", () => {
+  it("removes frequencies that the new rate cannot represent", () => {
     const made = through(tone(10_000, 48_000, 48_000), 48_000).slice(100, -100);
     expect(made.reduce((most, value) => Math.max(most, Math.abs(value)), 0)).toBeLessThan(0.01);
   });
 
-  it("samples are of 16 bits, and louder ones are cut", () => {
-    expect([...pcm(Float32Array.from([0, 1, -1, 2, 0.5]))]).toEqual([0, 32767, -32767, 32767, 16384]);
+  it("samples have 16 bits, and louder ones are clipped", () => {
+    expect([...toPcm(Float32Array.from([0, 1, -1, 2, 0.5]))]).toEqual([0, 32767, -32767, 32767, 16384]);
   });
 });
 
-it("a meter is logarithmic", () => {
+it("a level meter is logarithmic", () => {
   expect(meterPart(1)).toBe(1);
   expect(meterPart(0.001)).toBeCloseTo(0);
   expect(meterPart(0)).toBe(0);
@@ -52,17 +52,17 @@ describe("gaps", () => {
   const loud = new Float32Array(QUANTUM).map((_, i) => 0.3 * Math.sin(i));
   const silent = new Float32Array(QUANTUM);
 
-  /** Milliseconds found to be lost in two seconds of sound of 48 kHz; `change` gives what comes instead of a quantum, and how late it comes. */
+  /** Returns the milliseconds found to be lost in two seconds of sound at 48 kHz; `change` returns the samples that replace a quantum, and its delay. */
   const found = (change: (number: number) => { samples?: Float32Array; lateMs?: number }): number => {
     const finder = new GapFinder(48_000);
     for (let number = 0; number < 750; number++) {
       const { samples = loud, lateMs = 0 } = change(number);
-      finder.take(samples, 5000 + (number * QUANTUM) / 48 + lateMs);
+      finder.add(samples, 5000 + (number * QUANTUM) / 48 + lateMs);
     }
     return Math.round(1000 * finder.takeLost());
   };
 
-  it("sound that comes in time has none, and none where it is silent or comes late and catches up", () => {
+  it("do not occur in sound on time, in silence, or in late sound that catches up", () => {
     expect(found(() => ({}))).toBe(0);
     expect(found(() => ({ samples: silent }))).toBe(0);
     const fading = (gain: number): Float32Array => loud.map((sample, i) => (sample * gain * (QUANTUM - i)) / QUANTUM);
@@ -71,19 +71,19 @@ describe("gaps", () => {
     expect(found((number) => ({ lateMs: -0.002 * number }))).toBe(0);
   });
 
-  it("exact silence within sound is a gap, unless it lasts", () => {
+  it("occur where sound is exactly zero for a short time", () => {
     expect(found((number) => (number === 400 ? { samples: silent } : {}))).toBe(3);
     expect(found((number) => (number >= 300 && number < 330 ? { samples: silent } : {}))).toBe(80);
     expect(found((number) => (number >= 100 && number < 700 ? { samples: silent } : {}))).toBe(0);
   });
 
-  it("sound that comes later from one time on was left out", () => {
+  it("occur where sound stays late from one time on", () => {
     expect(found((number) => ({ lateMs: number > 400 ? 100 : 0 }))).toBe(100);
   });
 
-  it("what was told is not told again", () => {
+  it("are reported once", () => {
     const finder = new GapFinder(48_000);
-    for (const samples of [loud, silent, loud]) finder.take(samples, 0);
+    for (const samples of [loud, silent, loud]) finder.add(samples, 0);
     expect(finder.takeLost()).toBeGreaterThan(0);
     expect(finder.takeLost()).toBe(0);
   });
@@ -128,7 +128,7 @@ describe("talking", () => {
     vi.unstubAllGlobals();
   });
 
-  it("the button sends blocks while it is held, and the last part of one", async () => {
+  it("sends blocks while the button is held, and the last part of one", async () => {
     const voice = new VoiceState(connection, storage, new Microphone(openFake));
     voice.press();
     await soon();
@@ -142,7 +142,7 @@ describe("talking", () => {
     expect([...new Uint32Array(frames[0]!, 0, 4)]).toEqual([5, 2, 0, 0]);
   });
 
-  it("what the browser lost is told with the block after it, and with no other", async () => {
+  it("reports sound that the browser lost with the next block only", async () => {
     const voice = new VoiceState(connection, storage, new Microphone(openFake));
     voice.press();
     await soon();
@@ -156,11 +156,11 @@ describe("talking", () => {
     voice.press();
     await soon();
     deliver(Int16Array.of(5));
-    deliver(Int16Array.of(6), 3600); // the machine slept
+    deliver(Int16Array.of(6), 3600); // the computer was asleep
     expect(frames.map((frame) => new Uint32Array(frame, 0, 4)[2])).toEqual([1600, 0, 3200, 0, 0, 80_000]);
   });
 
-  it("the microphone is given back a while after it was used, and at once when the page is left", async () => {
+  it("releases the microphone a while after use, and at once when the page is closed", async () => {
     const voice = new VoiceState(connection, storage, new Microphone(openFake));
     voice.press();
     await soon();
@@ -171,13 +171,13 @@ describe("talking", () => {
     expect(closed).toBe(1);
     voice.press();
     await soon();
-    voice.letGo();
+    voice.releaseMicrophone();
     await soon();
     expect(closed).toBe(2);
     expect(modes().at(-1)).toBe("off");
   });
 
-  it("gaps in what is said are known until something else is said", async () => {
+  it("shows gaps in a command until the next command", async () => {
     const voice = new VoiceState(connection, storage, new Microphone(openFake));
     voice.press();
     await soon();
@@ -191,14 +191,14 @@ describe("talking", () => {
     expect(voice.hasGaps).toBe(true);
     expect(obstacle(voice)).toContain("gaps");
     connection.message.emit({ type: "conversation_text", number: 1, part: "response", text: "forward" });
-    expect(obstacle(voice)).toBe(null); // it was understood after all, or the robot asks for it again itself
+    expect(obstacle(voice)).toBe(null); // the command was understood after all, or the robot asks for it again
     voice.press();
     expect(voice.hasGaps).toBe(false);
     deliver(Int16Array.of(1), 0.04);
     expect(obstacle(voice)).toContain("gaps");
   });
 
-  it("a button let go before the microphone is there sends nothing", async () => {
+  it("sends nothing if the button is released before the microphone is ready", async () => {
     const voice = new VoiceState(connection, storage, new Microphone(openFake));
     voice.press();
     voice.release();
@@ -220,7 +220,7 @@ describe("talking", () => {
     expect([voice.held, modes()]).toEqual([false, []]);
   });
 
-  it("a microphone that goes away ends talking, and is asked for anew", async () => {
+  it("ends when the microphone is removed, and requests it again", async () => {
     const voice = new VoiceState(connection, storage, new Microphone(openFake));
     voice.setOpen(true);
     await soon();
@@ -232,7 +232,7 @@ describe("talking", () => {
     expect([voice.microphone.problem, modes().at(-1)]).toEqual([null, "held"]);
   });
 
-  it("a lost connection lets go of the button", async () => {
+  it("releases the button when the connection is lost", async () => {
     const voice = new VoiceState(connection, storage, new Microphone(openFake));
     voice.press();
     await soon();
@@ -241,7 +241,7 @@ describe("talking", () => {
     expect(voice.held).toBe(false);
   });
 
-  it("the conversation is kept, and what is being heard gives way to what was", () => {
+  it("keeps the conversation, and replaces the partial text by the final one", () => {
     const voice = new VoiceState(connection, storage, new Microphone(openFake));
     const says = (part: "partial" | "text" | "response", text: string): void =>
       connection.message.emit({ type: "conversation_text", number: 1, part, text });
@@ -256,7 +256,7 @@ describe("talking", () => {
     ]);
   });
 
-  it("the server is asked once, however many want to know", () => {
+  it("subscribes to the state once, however many panels show it", () => {
     const voice = new VoiceState(connection, storage, new Microphone(openFake));
     const [one, two] = [{}, {}];
     voice.watch(one, true);
@@ -269,7 +269,7 @@ describe("talking", () => {
     ]);
   });
 
-  it("of the words that are enrolled here only good takes count, and only those said since", () => {
+  it("counts only good recordings of words that are enrolled here, made since then", () => {
     const words = new WordsState(connection, new VoiceState(connection, storage, new Microphone(openFake)));
     const told = [{ name: "stop", takes: 3 }, { name: "forward", takes: 3 }];
     connection.message.emit({ type: "voice_words", words: told, enough: 3, file: "words.json", problem: null });

@@ -2,14 +2,14 @@ import { Box3, BoxGeometry, Matrix4, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import { freePlace } from "../src/scene/displays/free-place";
 import type { MeshPart } from "../src/scene/meshes/mesh-template";
-import { extrusion, ground, submesh } from "../src/scene/objects/world-geometries";
+import { extrudedPolygons, heightmapGeometry, submesh } from "../src/scene/objects/world-geometries";
 
 const SQUARE = [0, 0, 4, 0, 4, 4, 0, 4];
 const HOLE = [1, 1, 3, 1, 3, 3, 1, 3];
 
-/** Area of what faces up, m2. */
+/** Returns the area of the faces that face up, m2. */
 function top(outlines: number[][]): number {
-  const geometry = extrusion(outlines, 2);
+  const geometry = extrudedPolygons(outlines, 2);
   const points = geometry.getAttribute("position");
   let sum = 0;
   for (let i = 0; i < points.count; i += 3) {
@@ -22,14 +22,14 @@ function top(outlines: number[][]): number {
 }
 
 describe("extrusion", () => {
-  it("raises polygons, and cuts holes of those inside of others", () => {
+  it("raises polygons, and cuts inner ones out as holes", () => {
     expect(top([SQUARE])).toBeCloseTo(16);
     expect(top([SQUARE, HOLE])).toBeCloseTo(12);
     expect(top([HOLE, SQUARE])).toBeCloseTo(12);
     expect(top([SQUARE, HOLE, [1.5, 1.5, 2.5, 1.5, 2.5, 2.5, 1.5, 2.5]])).toBeCloseTo(13);
   });
 
-  it("draws nothing of what is no polygon", () => {
+  it("skips invalid polygons", () => {
     expect(top([[0, 0, 1, 1]])).toBe(0);
   });
 });
@@ -42,7 +42,7 @@ describe("submesh", () => {
   });
   const parts = [part("wheel", 2), part("body", 5)];
 
-  it("is all of the mesh, or what has the name", () => {
+  it("is the whole mesh, or the parts with the name", () => {
     expect(submesh(parts, null).parts).toEqual(parts);
     expect(submesh(parts, { name: "body", center: false }).parts).toEqual([parts[1]]);
     expect(submesh(parts, { name: "scene", center: false }).parts).toEqual(parts);
@@ -55,8 +55,8 @@ describe("submesh", () => {
 });
 
 describe("ground", () => {
-  it("has the heights in their places, the first row at the least y", () => {
-    const geometry = ground(new Float32Array([0, 0, 1, 1]), 2, [10, 20, 3, 1, 2, 0.5, 5]);
+  it("has the heights at their positions, the first row at minimum y", () => {
+    const geometry = heightmapGeometry(new Float32Array([0, 0, 1, 1]), 2, [10, 20, 3, 1, 2, 0.5, 5]);
     geometry.computeBoundingBox();
     const box = geometry.boundingBox ?? new Box3();
     expect([...box.min.toArray(), ...box.max.toArray()]).toEqual([-4, -8, 0.5, 6, 12, 3.5]);
@@ -66,11 +66,11 @@ describe("ground", () => {
   });
 });
 
-describe("the place that is proposed for a model", () => {
+describe("the position proposed for a model", () => {
   const box = (x: number, y: number, side: number): Box3 => new Box3().setFromCenterAndSize(new Vector3(x, y, 0.2), new Vector3(side, side, 0.4));
   const origin = new Matrix4();
 
-  it("is the origin, or the nearest metre beside it that is free", () => {
+  it("is the origin, or the nearest free metre", () => {
     expect(freePlace([], origin)).toEqual([0, 0, 0]);
     expect(freePlace([box(5, 0, 1)], origin)).toEqual([0, 0, 0]);
     expect(freePlace([box(0, 0, 0.4)], origin)).toEqual([1, 0, 0]);
@@ -78,12 +78,12 @@ describe("the place that is proposed for a model", () => {
     expect(freePlace([box(0, 0, 3.2)], origin)).toEqual([3, 0, 0]);
   });
 
-  it("is one of the world, wherever the fixed frame is", () => {
+  it("is in the world's frame, whatever the fixed frame is", () => {
     expect(freePlace([box(10, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([1, 0, 0]);
     expect(freePlace([box(0, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([0, 0, 0]);
   });
 
-  it("is beside everything where nothing near is free", () => {
+  it("is beyond all objects if nothing near is free", () => {
     expect(freePlace([box(0, 0, 60)], origin)).toEqual([31, 0, 0]);
   });
 });

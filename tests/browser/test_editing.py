@@ -218,7 +218,7 @@ def test_an_axis_is_turned_and_has_no_place_to_be_moved_to(start, open_page, fil
     page.locator(".editing-part", has_text="Axis").click()
     frames.wait_for(state="hidden")
     lengths.wait_for(state="hidden")
-    assert tools.get_by_role("button", name="Handles to move it").count() == 0
+    assert tools.get_by_role("button", name="Show handles that move the part").count() == 0
     page.locator(".editing-part", has_text="Visual").click()
     frames.wait_for()
 

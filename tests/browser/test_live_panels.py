@@ -124,7 +124,7 @@ def test_numbers_of_topics_are_plotted(page: Page, robot: Robot):
     assert page.evaluate("window.linkwright.panels.monitor.window") == held
     # What is seen is what is saved.
     with page.expect_download() as download:
-        page.get_by_role("button", name="Save the values of this diagram").click()
+        page.get_by_role("button", name="Save the values of this plot").click()
     rows = list(csv.reader(download.value.path().read_text().splitlines()))
     assert rows[0] == ["time", "/joint_states.position[shoulder]", "/left/current.data"]
     assert len(rows) > 1500

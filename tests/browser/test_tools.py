@@ -205,7 +205,7 @@ def test_pause_freezes_what_is_shown(scene):
 def test_the_sheet_of_keys_opens_and_closes(scene):
     page = scene.page
     page.keyboard.press("?")
-    sheet = page.get_by_role("dialog", name="Keys")
+    sheet = page.get_by_role("dialog", name="Keyboard shortcuts")
     sheet.wait_for()
     assert "2D Goal Pose" in sheet.inner_text()
     page.keyboard.press("Escape")

@@ -106,7 +106,7 @@ def test_the_key_talks_while_it_is_held(talking: tuple[Robot, Page]) -> None:
 def test_the_conversation_is_shown_and_commands_are_typed(talking: tuple[Robot, Page]) -> None:
     robot, page = talking
     open_panel(page)
-    until(page, "lw.panels.voice.told?.text_listeners === 1")
+    until(page, "lw.panels.voice.serverState?.text_listeners === 1")
     robot.says("partial_text", "turn")
     page.wait_for_selector(".voice-said.partial:has-text('turn')")
     for topic, text in (("text", "turn left"), ("command", "turn (angle 90°)"), ("response", "Turning left.")):
@@ -204,7 +204,7 @@ def test_who_is_not_understood_enrols_words_where_they_stand(
     page.keyboard.down("v")
     wait_until(lambda: robot.held == [True], SECONDS)
     page.keyboard.up("v")
-    until(page, "lw.panels.voice.told !== null")
+    until(page, "lw.panels.voice.serverState !== null")
     robot.viewer.publish("/voice/propose_enrolling", get_message("std_msgs/msg/Bool")(data=True))
     robot.says("response", "I know none of what you say")
     page.locator(".voice-notice").get_by_role("button", name="Enrol here").click()

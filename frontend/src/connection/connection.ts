@@ -2,7 +2,7 @@ import { PROTOCOL_VERSION, type PageMessage, type ServerMessage } from "../proto
 import { Signal } from "../signal";
 import { browserStorage } from "../storage";
 import { unpackData, type DisplayData } from "./data";
-import { isPiece, Pieces } from "./pieces";
+import { isPiece, FrameAssembler } from "./frame-assembler";
 import { askForProof } from "./proof";
 import { recordingIn } from "./recording-address";
 import { unpackSamples, type SeriesSamples } from "./samples";
@@ -10,45 +10,51 @@ import type { Tokens } from "./tokens";
 import { unpackTransforms, type Transforms } from "./transforms";
 
 /**
- * `ended`: the program said goodbye; one with the same token may still return. `refused`: the page has no token, or
- * there is a program that does not know it. `outdated`: a reload did not help.
+ * The state of the connection. `ended`: the program has shut down; one with the same token may start again. `refused`:
+ * the page has no token, or the program does not know its token. `outdated`: the page is of another version than the
+ * server, and a reload did not help.
  */
 export type ConnectionState = "connecting" | "connected" | "reconnecting" | "ended" | "refused" | "outdated";
 
 const FIRST_RETRY_MS = 250;
-/** Less than the server waits for pages that were open before it was restarted. */
+/** Shorter than the time that a restarted server waits for the pages that were open before. */
 const LONGEST_RETRY_MS = 2000;
 const GOING_AWAY = 1001;
 const UNAUTHORIZED = 401;
-/** Messages of this length, in bytes or characters, are acknowledged: fewer than the server counts on. */
+/**
+ * Messages of at least this length, in bytes or characters, are acknowledged. The server relies on acknowledgements of
+ * longer ones only.
+ */
 const LARGE = 1024;
 const RELOADED_KEY = "linkwright.reloaded-for-protocol";
 
-/** The WebSocket to the server, opened again with growing pauses whenever it is lost. */
+/** The WebSocket to the server, reopened after growing pauses whenever it is lost. */
 export class Connection {
   readonly message = new Signal<ServerMessage>();
   readonly transforms = new Signal<Transforms>();
   readonly data = new Signal<DisplayData>();
   readonly samples = new Signal<SeriesSamples[]>();
   readonly stateChanged = new Signal<ConnectionState>();
-  private readonly pieces = new Pieces();
+  private readonly pieces = new FrameAssembler();
   private socket: WebSocket | null = null;
   private retryMs = FIRST_RETRY_MS;
   private receivedCount = 0;
-  private shown: string | null = null;
-  /** The token with which this page was let in. */
-  private accepted: string | null = null;
-  private attempts = 0;
+  private shownToken: string | null = null;
+  /** The token that the server accepted from this page. */
+  private acceptedToken: string | null = null;
+  private attemptCount = 0;
   private retryTimer: ReturnType<typeof setTimeout> | undefined;
   private current: ConnectionState = "connecting";
 
-  /** `url` is the address of the server's WebSocket, without the token; `tokens` is null without a server that asks for one. */
+  /**
+   * `url` is the address of the server's WebSocket, without the token; `tokens` is null where the server asks for none.
+   */
   constructor(
     private readonly url: string,
     readonly tokens: Tokens | null = null,
   ) {}
 
-  /** Calls `listener` with every message of a type until the returned function is called. */
+  /** Calls `listener` with every message of a type, until the returned function is called. */
   on<T extends ServerMessage["type"]>(
     type: T,
     listener: (message: Extract<ServerMessage, { type: T }>) => void,
@@ -69,32 +75,35 @@ export class Connection {
 
   open(): void {
     clearTimeout(this.retryTimer);
-    this.shown = this.tokens?.current ?? null;
-    if (this.tokens && this.shown === null) {
+    this.shownToken = this.tokens?.current ?? null;
+    if (this.tokens && this.shownToken === null) {
       // Another page of this browser may be let in.
-      this.become("refused");
+      this.setState("refused");
       this.retryLater();
       return;
     }
-    this.attempts += 1;
-    if (this.shown !== null && this.accepted !== null) void this.comeBack(this.shown, this.attempts);
+    this.attemptCount += 1;
+    if (this.shownToken !== null && this.acceptedToken !== null) void this.reconnect(this.shownToken, this.attemptCount);
     else this.connect();
   }
 
-  /** Makes the next attempt now. */
-  hurry(): void {
-    if (this.socket === null && this.attempts > 0 && this.current !== "connected" && this.current !== "outdated") this.open();
+  /** Retries immediately instead of waiting for the timer. */
+  retryNow(): void {
+    if (this.socket === null && this.attemptCount > 0 && this.current !== "connected" && this.current !== "outdated") this.open();
   }
 
-  /** Shows the token to the program that this page knows, and to no other program at its address. */
-  private async comeBack(token: string, attempt: number): Promise<void> {
+  /**
+   * Sends the token only to a program that proves it knows the token already; another program may listen at the address
+   * now.
+   */
+  private async reconnect(token: string, attempt: number): Promise<void> {
     const proof = await askForProof(this.url, token);
-    if (attempt !== this.attempts) return;
+    if (attempt !== this.attemptCount) return;
     if (proof === "known") {
       this.connect();
       return;
     }
-    if (proof === "unknown" && this.tokens?.refused() !== true) this.become("refused");
+    if (proof === "unknown" && this.tokens?.refuse() !== true) this.setState("refused");
     this.retryLater();
   }
 
@@ -102,25 +111,25 @@ export class Connection {
     const socket = new WebSocket(this.address.href);
     socket.binaryType = "arraybuffer";
     socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.receive(event.data);
-    socket.onclose = (event) => this.lost(event.code);
+    socket.onclose = (event) => this.onClosed(event.code);
     this.socket = socket;
     this.receivedCount = 0;
   }
 
-  /** Shows the server another token, now. */
-  show(token: string): void {
-    this.tokens?.take(token);
-    this.accepted = null;
-    this.become("connecting");
+  /** Connects with another token immediately. */
+  connectWith(token: string): void {
+    this.tokens?.use(token);
+    this.acceptedToken = null;
+    this.setState("connecting");
     this.open();
   }
 
-  /** Sends now or not at all: the user's actions without a server are not replayed later. */
+  /** Sends a message, or drops it while disconnected: actions of the user must not be replayed later. */
   send(message: PageMessage): void {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
 
-  /** Sends a binary frame, likewise. */
+  /** Sends a binary frame, or drops it while disconnected. */
   sendBytes(frame: ArrayBuffer): void {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(frame);
   }
@@ -128,7 +137,7 @@ export class Connection {
   private receive(data: string | ArrayBuffer): void {
     this.receivedCount += 1;
     const length = typeof data === "string" ? data.length : data.byteLength;
-    // Before it is worked on: the server measures the line with it.
+    // Acknowledge before the work: the server measures the throughput of the connection with it.
     if (this.receivedCount === 1 || length >= LARGE) this.send({ type: "received", count: this.receivedCount });
     if (data instanceof ArrayBuffer) {
       this.receiveBytes(data);
@@ -137,21 +146,21 @@ export class Connection {
     const message = JSON.parse(data) as ServerMessage;
     if (message.type === "hello") {
       if (message.protocol !== PROTOCOL_VERSION) {
-        this.outdated();
+        this.reloadOutdated();
         return;
       }
       browserStorage("sessionStorage").removeItem(RELOADED_KEY);
-      this.accepted = this.shown;
-      if (this.shown !== null) this.tokens?.accepted(this.shown);
+      this.acceptedToken = this.shownToken;
+      if (this.shownToken !== null) this.tokens?.accept(this.shownToken);
       this.retryMs = FIRST_RETRY_MS;
-      this.become("connected");
+      this.setState("connected");
     }
     this.message.emit(message);
   }
 
   protected receiveBytes(bytes: ArrayBuffer): void {
     if (isPiece(bytes)) {
-      const whole = this.pieces.take(bytes);
+      const whole = this.pieces.add(bytes);
       if (whole) this.receiveBytes(whole);
       return;
     }
@@ -163,12 +172,12 @@ export class Connection {
     if (samples) this.samples.emit(samples);
   }
 
-  private lost(code: number): void {
+  private onClosed(code: number): void {
     this.socket = null;
     if (this.current === "outdated") return;
-    if (code === GOING_AWAY) this.become("ended");
-    else if (this.current === "connected") this.become("reconnecting");
-    else if (this.receivedCount === 0) void this.askWhy();
+    if (code === GOING_AWAY) this.setState("ended");
+    else if (this.current === "connected") this.setState("reconnecting");
+    else if (this.receivedCount === 0) void this.findRefusal();
     this.retryLater();
   }
 
@@ -180,27 +189,27 @@ export class Connection {
   /** The address of the socket, with the token. */
   private get address(): URL {
     const url = new URL(this.url);
-    if (this.shown !== null) url.searchParams.set("token", this.shown);
+    if (this.shownToken !== null) url.searchParams.set("token", this.shownToken);
     return url;
   }
 
-  /** A socket that does not open gives no reason; an ordinary request for it does. */
-  private async askWhy(): Promise<void> {
+  /** Finds out why the socket did not open: its close event gives no reason, but an ordinary request does. */
+  private async findRefusal(): Promise<void> {
     const url = this.address;
     url.protocol = url.protocol === "wss:" ? "https:" : "http:";
     try {
       const { status } = await fetch(url, { cache: "no-store" });
       if (status !== UNAUTHORIZED || this.socket?.readyState === WebSocket.OPEN) return;
-      if (this.tokens?.refused() !== true) this.become("refused");
+      if (this.tokens?.refuse() !== true) this.setState("refused");
     } catch {
       // No server answers.
     }
   }
 
-  /** The server was replaced by another version: its own page is one reload away. */
-  private outdated(): void {
+  /** Reloads the page once: the server now has another version, and serves the page that belongs to it. */
+  private reloadOutdated(): void {
     const socket = this.socket;
-    this.become("outdated");
+    this.setState("outdated");
     socket?.close();
     const tab = browserStorage("sessionStorage");
     if (tab.getItem(RELOADED_KEY) !== null) return;
@@ -208,7 +217,7 @@ export class Connection {
     location.reload();
   }
 
-  protected become(state: ConnectionState): void {
+  protected setState(state: ConnectionState): void {
     if (state === this.current) return;
     this.current = state;
     this.stateChanged.emit(state);
@@ -216,8 +225,8 @@ export class Connection {
 }
 
 /**
- * The address of the WebSocket for a page at `page`; `own` is the name of its own displays, `language` that of its
- * texts.
+ * Returns the address of the WebSocket for a page at `page`. `own` is the key of the page's own displays, `language`
+ * the language of the server's texts.
  */
 export function socketUrl(page: string, own: string | null = null, language: string | null = null): string {
   const url = new URL("ws", page);

@@ -3,21 +3,23 @@ import { DATA_KIND, type DataContent } from "../protocol";
 const HEADER_BYTES = 16;
 const ALIGNMENT = 8;
 
-/** The content that a display draws: one binary frame. */
+/** One content of a display, from one binary frame. */
 export interface DisplayData {
   display: string;
-  /** The key of this content among several of the display; it replaces the one before with the same key. */
+  /** The key of this content within the display; it replaces the previous content with the same key. */
   key: string;
   /** The frame that the content is in; empty for the fixed frame. */
   frame: string;
-  /** Time of the content, seconds. */
+  /** Time of the content, s. */
   stamp: number;
-  /** Pose of `frame` in the fixed frame when the content was true, m and xyzw; null: follow the frame. */
+  /**
+   * Pose of `frame` in the fixed frame at the time of the content, m and xyzw; null if the content follows the frame.
+   */
   pose: number[] | null;
   content: DataContent;
 }
 
-/** Reads what `pack_data` of `page/protocol/message.py` wrote; null for any other bytes. */
+/** Unpacks the bytes that `pack_data` of `page/protocol/message.py` wrote; returns null for any other bytes. */
 export function unpackData(buffer: ArrayBuffer): DisplayData | null {
   if (buffer.byteLength < HEADER_BYTES) return null;
   const header = new DataView(buffer);
@@ -25,7 +27,7 @@ export function unpackData(buffer: ArrayBuffer): DisplayData | null {
   const length = header.getUint32(4, true);
   const text = new TextDecoder().decode(new Uint8Array(buffer, HEADER_BYTES, length));
   const start = Math.ceil((HEADER_BYTES + length) / ALIGNMENT) * ALIGNMENT;
-  return restored(JSON.parse(text), (reference) => view(buffer, start, reference)) as DisplayData;
+  return restoreArrays(JSON.parse(text), (reference) => view(buffer, start, reference)) as DisplayData;
 }
 
 type Reference = readonly ["f4" | "u1", number, number];
@@ -33,26 +35,26 @@ type Reference = readonly ["f4" | "u1", number, number];
 type Restore = (reference: Reference) => ArrayBufferView;
 
 /**
- * Puts the arrays where references to them are. A frame may hold thousands of markers: the reviver of `JSON.parse`
- * would visit each of their numbers.
+ * Replaces references by the arrays that they refer to. This is faster than a reviver of `JSON.parse`, which would
+ * visit every number of the thousands of markers that a frame may hold.
  */
-function restored(value: unknown, restore: Restore): unknown {
+function restoreArrays(value: unknown, restore: Restore): unknown {
   if (typeof value !== "object" || value === null) return value;
   if (Array.isArray(value)) {
-    // Lists contain items of one kind.
-    if (typeof value[0] === "object") value.forEach((each, index) => (value[index] = restored(each, restore)));
+    // Lists contain items of one kind, so the first item tells for all.
+    if (typeof value[0] === "object") value.forEach((each, index) => (value[index] = restoreArrays(each, restore)));
     return value;
   }
-  if (isArray(value)) return restore(value.$);
+  if (isReference(value)) return restore(value.$);
   const object = value as Record<string, unknown>;
   for (const name in object) {
     const each = object[name];
-    if (typeof each === "object") object[name] = restored(each, restore);
+    if (typeof each === "object") object[name] = restoreArrays(each, restore);
   }
   return value;
 }
 
-function isArray(value: object): value is { $: Reference } {
+function isReference(value: object): value is { $: Reference } {
   return "$" in value;
 }
 

@@ -1,12 +1,12 @@
-/** Whether a server knows a token, without sending it: "silent" if no server answers. */
+/** Whether a server knows a token: "silent" if no server answers. */
 export type Proof = "known" | "unknown" | "silent";
 
 /**
- * Asks the server of a socket's address to prove that it knows a token. After a program has ended, the next program
- * at its port would otherwise receive the token, and could open the page of a later one.
+ * Asks the server of a socket's address to prove that it knows a token, without sending the token. Otherwise, after a
+ * program has ended, the next program at its port would receive the token, and could open the page of a later one.
  *
- * Browsers compute for pages of this machine, or by HTTPS, only. Elsewhere the server is believed: there no program keeps
- * its token.
+ * Browsers offer cryptography only to pages of this machine or over HTTPS. Elsewhere the server is trusted without
+ * proof: a program there does not reuse its token.
  */
 export async function askForProof(socketUrl: string, token: string): Promise<Proof> {
   const { subtle } = globalThis.crypto as Partial<Crypto>;

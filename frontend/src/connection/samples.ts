@@ -3,18 +3,18 @@ import { SAMPLES_KIND } from "../protocol";
 const HEADER_BYTES = 16;
 const SERIES_BYTES = 8;
 
-/** New samples of one series of the plots. */
+/** New samples of one series of a plot. */
 export interface SeriesSamples {
-  /** The id that the page gave the series. */
+  /** The ID that the page assigned to the series. */
   id: number;
-  /** When each was received, seconds since the epoch. */
+  /** The times of receipt, seconds since the epoch. */
   received: Float64Array;
-  /** The stamp of each header, seconds; NaN where there is none. */
+  /** The stamps of the headers, s; NaN for messages without a header. */
   stamps: Float64Array;
   values: Float64Array;
 }
 
-/** Reads what `pack_samples` of `viewer/protocol/monitor.py` wrote; null for any other bytes. */
+/** Unpacks the bytes that `pack_samples` of `viewer/protocol/monitor.py` wrote; returns null for any other bytes. */
 export function unpackSamples(buffer: ArrayBuffer): SeriesSamples[] | null {
   if (buffer.byteLength < HEADER_BYTES) return null;
   const view = new DataView(buffer);

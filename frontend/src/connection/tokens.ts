@@ -3,15 +3,16 @@ import type { BrowserStorage } from "../storage";
 const PARAMETER = "token";
 const KEY = "linkwright.token";
 
-/** The address bar; `moveTo` changes its text and loads nothing. */
+/** The address bar; `moveTo` replaces the address without loading it. */
 export interface AddressBar {
   readonly href: string;
   moveTo(href: string): void;
 }
 
 /**
- * The token that the page shows the server: the one in its address, and the last one that let a page of this browser
- * in. The browser's storage belongs to this host and port alone, so no other server receives it.
+ * The tokens that the page may send to the server: the one in its address, and the last one that the server accepted
+ * from a page of this browser. The browser's storage belongs to this host and port alone, so no other server receives
+ * it.
  */
 export class Tokens {
   private own: string | null;
@@ -24,46 +25,46 @@ export class Tokens {
     this.own = tokenIn(address.href);
   }
 
-  /** The one to show now; they alternate after a refusal. */
+  /** The token to send next; the known tokens alternate after refusals. */
   get current(): string | null {
-    const { known } = this;
-    return known[this.refusals % Math.max(1, known.length)] ?? null;
+    const { knownTokens } = this;
+    return knownTokens[this.refusals % Math.max(1, knownTokens.length)] ?? null;
   }
 
-  /** Keeps a token that the server accepted, and removes it from the address bar. */
-  accepted(token: string): void {
+  /** Stores a token that the server accepted, and removes it from the address bar. */
+  accept(token: string): void {
     const { address, storage } = this;
-    this.take(token);
+    this.use(token);
     storage.setItem(KEY, token);
-    // Where the browser keeps nothing, the address has to.
-    const isKept = storage.lasts && storage.getItem(KEY) === token;
+    // Where the browser stores nothing, the token must stay in the address.
+    const isKept = storage.isPersistent && storage.getItem(KEY) === token;
     if (isKept && tokenIn(address.href) !== null) address.moveTo(withToken(address.href, null));
   }
 
-  /** The current one was refused; whether there is one that was not yet. */
-  refused(): boolean {
+  /** Notes that the current token was refused; returns whether another one remains to be tried. */
+  refuse(): boolean {
     this.refusals += 1;
-    return this.refusals < this.known.length;
+    return this.refusals < this.knownTokens.length;
   }
 
-  /** Shows this one from now on. */
-  take(token: string): void {
+  /** Uses this token from now on. */
+  use(token: string): void {
     this.own = token;
     this.refusals = 0;
   }
 
-  /** The address by which others see this page. */
+  /** The address of this page for other users, with the token. */
   get link(): string {
     return withToken(this.address.href, this.current);
   }
 
-  private get known(): string[] {
+  private get knownTokens(): string[] {
     const known = [this.own, this.storage.getItem(KEY)].filter((token) => token !== null);
     return [...new Set(known)];
   }
 }
 
-/** The token of an address somewhere in a text, or the text itself where it may be one. */
+/** Returns the token of an address within a text, or the text itself if it can be a token. */
 export function tokenOf(text: string): string | null {
   return /[?&]token=([\w-]+)/.exec(text)?.[1] ?? /^\s*([\w-]{16,})\s*$/.exec(text)?.[1] ?? null;
 }

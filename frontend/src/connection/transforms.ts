@@ -3,19 +3,19 @@ import { TRANSFORMS_KIND } from "../protocol";
 const HEADER_BYTES = 24;
 const FLOATS_PER_POSE = 7;
 
-/** One binary frame: the poses of every frame of a table, in the fixed frame. */
+/** The poses of all frames of a table in the fixed frame, from one binary frame. */
 export interface Transforms {
   /** Revision of the frame table that names the rows. */
   revision: number;
-  /** Time of the newest transform, seconds. */
+  /** Time of the newest transform, s. */
   stamp: number;
-  /** count x 7: x y z (m) qx qy qz qw; NaN rows without a transform. */
+  /** One row of seven numbers a frame: x y z (m), qx qy qz qw; NaN for a frame without a transform. */
   poses: Float32Array;
-  /** Seconds since each frame was last heard of; 0 for static frames. */
+  /** Seconds since the last transform of each frame; 0 for static frames. */
   ages: Float32Array;
 }
 
-/** Reads what `pack_transforms` of `page/protocol/message.py` wrote; null for any other bytes. */
+/** Unpacks the bytes that `pack_transforms` of `page/protocol/message.py` wrote; returns null for any other bytes. */
 export function unpackTransforms(buffer: ArrayBuffer): Transforms | null {
   if (buffer.byteLength < HEADER_BYTES) return null;
   const header = new DataView(buffer);

@@ -1,15 +1,15 @@
 import type { Tokens } from "./tokens";
 
-/** A file to be sent, by the name that it has on the server. */
+/** A file to upload, with its name on the server. */
 export interface NamedFile {
   name: string;
   file: Blob;
 }
 
-/** The server refuses it; the text is the reason. */
+/** The server refused the upload; the message is its reason. */
 export class RefusedError extends Error {}
 
-/** Sends the files of a recording to the server, one after the other, and has it shown; or one that the server has. */
+/** Uploads the files of a recording one after the other, or opens a recording that the server has already. */
 export class Upload {
   private request: XMLHttpRequest | null = null;
   private key = "";
@@ -17,7 +17,7 @@ export class Upload {
 
   /**
    * @param base - the address of the page.
-   * @param language - of refusals.
+   * @param language - the language of the server's error messages.
    * @param progress - receives the number of bytes sent.
    */
   constructor(
@@ -30,19 +30,19 @@ export class Upload {
   /** Uploads a recording and returns the server's name for it; null if it was cancelled. */
   async send(name: string, files: readonly NamedFile[]): Promise<string | null> {
     const announced = { name, files: files.map((each) => ({ name: each.name, size: each.file.size })) };
-    this.key = (await this.ask("POST", "recordings", JSON.stringify(announced)))?.key ?? "";
+    this.key = (await this.fetchAnswer("POST", "recordings", JSON.stringify(announced)))?.key ?? "";
     let before = 0;
     for (const [number, { file }] of files.entries()) {
-      await this.ask("PUT", `recordings/${this.key}/${number}`, file, (sent) => this.progress(before + sent));
+      await this.fetchAnswer("PUT", `recordings/${this.key}/${number}`, file, (sent) => this.progress(before + sent));
       before += file.size;
     }
     this.progress(before);
-    return (await this.ask("POST", `recordings/${this.key}`, null))?.recording ?? null;
+    return (await this.fetchAnswer("POST", `recordings/${this.key}`, null))?.recording ?? null;
   }
 
-  /** Opens a recording of the server's by the address of its file, and returns its name; null where it was cancelled. */
+  /** Opens a recording of the server by the address of its file, and returns its name; null if this was cancelled. */
   async show(file: string): Promise<string | null> {
-    return (await this.ask("POST", file, null))?.recording ?? null;
+    return (await this.fetchAnswer("POST", file, null))?.recording ?? null;
   }
 
   cancel(): void {
@@ -51,8 +51,8 @@ export class Upload {
     if (this.key !== "") void fetch(this.address(`recordings/${this.key}`), { method: "DELETE" }).catch(() => undefined);
   }
 
-  /** An answer of the server; null once this is cancelled. */
-  private ask(method: string, path: string, body: Blob | string | null, sent?: (bytes: number) => void): Promise<Answer | null> {
+  /** Sends a request and returns the server's answer; null once this is cancelled. */
+  private fetchAnswer(method: string, path: string, body: Blob | string | null, sent?: (bytes: number) => void): Promise<Answer | null> {
     if (this.cancelled) return Promise.resolve(null);
     return new Promise((resolve, reject) => {
       const request = new XMLHttpRequest();
@@ -60,7 +60,7 @@ export class Upload {
       request.open(method, this.address(path));
       if (sent) request.upload.addEventListener("progress", ({ loaded }) => sent(loaded));
       request.addEventListener("load", () => {
-        const answer = parsed(request.responseText);
+        const answer = parseAnswer(request.responseText);
         if (request.status < 300 && answer.problem === undefined) resolve(answer);
         else reject(new RefusedError(answer.problem ?? request.responseText.trim()));
       });
@@ -85,7 +85,7 @@ interface Answer {
   problem?: string;
 }
 
-function parsed(text: string): Answer {
+function parseAnswer(text: string): Answer {
   try {
     return JSON.parse(text) as Answer;
   } catch {

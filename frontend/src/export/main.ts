@@ -25,7 +25,7 @@ import { readRecording } from "./recording";
 import { Sidebar } from "./sidebar";
 import { lookFrom } from "./views";
 
-/** Images of displays have panels of their own; an exported page has none. */
+/** An exported page has no panels for the images of displays. */
 const NO_PANELS = { offer: () => undefined, withdraw: () => undefined, retitle: () => undefined };
 
 function start(app: HTMLElement, recorded: HTMLElement): void {
@@ -35,10 +35,10 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
   const { display } = recording;
   const connection = new RecordedConnection(recording);
   const session = new Session(connection);
-  languageChosen.on(() => session.kept.leave());
+  languageChosen.on(() => session.memory.store());
   connection.open();
   const { joints } = session;
-  session.kept.part("positions", () => joints.positions, (positions) => joints.move(positions));
+  session.memory.preserve("positions", () => joints.positions, (positions) => joints.move(positions));
 
   const container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
   const column = new CardColumn();
@@ -47,7 +47,7 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
   const scene = h("main", { class: "scene-box" }, container, overlay);
   app.append(scene);
   const stage = makeStage(container, session, new RecordedFiles(recording.files), theme);
-  if (stage) column.lieOver(stage.room);
+  if (stage) column.connectScene(stage.freeRoom);
   const actions = {
     lookFrom: (side: Parameters<typeof lookFrom>[0]): void => {
       if (stage) lookFrom(side, session, stage);

@@ -4,9 +4,11 @@ import type { FrameTable, JointControl, JointScene, RobotScene } from "../protoc
 
 type Positions = Readonly<Record<string, number>>;
 
-const MOST_FOLLOWED = 64;
+const MAX_MIMIC_DEPTH = 64;
 
-/** A frame below another: its place in the parent, and the joint that moves it, at the position of its leading joint. */
+/**
+ * A frame below another: its fixed pose in the parent, or the joint that moves it, and the joint that leads that joint.
+ */
 interface Frame {
   readonly parent: number;
   readonly fixed: Matrix4;
@@ -14,20 +16,23 @@ interface Frame {
   readonly leader: string;
 }
 
-/** A robot whose joints follow those of another: by the name of each the name of that. */
+/**
+ * A robot whose joints follow joints of another robot; `joints` maps its joint names to the names of the leading
+ * joints.
+ */
 export interface FollowingRobot {
   readonly robot: RobotScene;
   readonly joints: Readonly<Record<string, string>>;
 }
 
 /**
- * The frames of an exported page. Those of the robot follow its joints; all others stay where they were in their
- * parents.
+ * The frames of an exported page. The frames of the robot follow its joints; all others keep their pose in their
+ * parent.
  */
 export class MovingRobot {
   private readonly frames: Frame[];
   private readonly order: readonly number[];
-  private readonly anchor: { row: number; pose: Matrix4 };
+  private readonly fixedFrame: { row: number; pose: Matrix4 };
 
   constructor(
     private readonly table: FrameTable,
@@ -38,7 +43,7 @@ export class MovingRobot {
   ) {
     const poses = table.names.map((_, row) => poseAt(recorded.poses, row));
     const own = Object.fromEntries(robot.joints.map(({ name }) => [name, name]));
-    const led = new Map([{ robot, joints: own }, ...following].flatMap(ledFrames));
+    const led = new Map([{ robot, joints: own }, ...following].flatMap(drivenFrames));
     this.frames = table.names.map((name, row) => {
       const parent = table.parents[row] ?? -1;
       const pose = poses[row] ?? null;
@@ -49,12 +54,12 @@ export class MovingRobot {
       return { parent, fixed, joint, leader: found?.leader ?? "" };
     });
     this.order = parentsFirst(this.frames);
-    // The fixed frame stays where it is, wherever in the tree it is: of the frames with a pose, the one at the origin.
+    // The fixed frame must not move, wherever it is in the tree. It is the frame whose recorded pose is the identity.
     const row = Math.max(0, poses.findIndex((pose) => pose !== null && isIdentity(pose)));
-    this.anchor = { row, pose: poses[row]?.clone() ?? new Matrix4() };
+    this.fixedFrame = { row, pose: poses[row]?.clone() ?? new Matrix4() };
   }
 
-  /** The transforms of all frames for positions of joints, rad or m. */
+  /** Returns the transforms of all frames for joint positions, rad or m. */
   transforms(positions: Positions): Transforms {
     const poses = this.frames.map(() => new Matrix4());
     for (const row of this.order) {
@@ -64,7 +69,7 @@ export class MovingRobot {
       poses[row]?.copy(local);
       if (above) poses[row]?.premultiply(above);
     }
-    const shift = this.anchor.pose.clone().multiply((poses[this.anchor.row] ?? new Matrix4()).clone().invert());
+    const shift = this.fixedFrame.pose.clone().multiply((poses[this.fixedFrame.row] ?? new Matrix4()).clone().invert());
     const numbers = new Float32Array(poses.length * 7);
     const [at, turn, scale] = [new Vector3(), new Quaternion(), new Vector3()];
     poses.forEach((pose, row) => {
@@ -74,10 +79,10 @@ export class MovingRobot {
     return { revision: this.table.revision, stamp: 0, poses: numbers, ages: new Float32Array(poses.length) };
   }
 
-  /** The position of a joint, be it one that mimics another. */
+  /** Returns the position of a joint, also of one that mimics another. */
   position(name: string, positions: Positions): number {
     let [factor, offset, at] = [1, 0, name];
-    for (let i = 0; i < MOST_FOLLOWED; i++) {
+    for (let i = 0; i < MAX_MIMIC_DEPTH; i++) {
       const control = this.controls.find((each) => each.name === at);
       if (!control || control.mimic === null) break;
       offset += factor * control.offset;
@@ -88,8 +93,8 @@ export class MovingRobot {
   }
 }
 
-/** The frames that joints of a robot move, each with its joint, the frame above it and the joint that leads. */
-function ledFrames({ robot, joints }: FollowingRobot): [string, { joint: JointScene; above: string | undefined; leader: string }][] {
+/** Returns the frames that joints of a robot move, each with its joint, the frame above it and the leading joint. */
+function drivenFrames({ robot, joints }: FollowingRobot): [string, { joint: JointScene; above: string | undefined; leader: string }][] {
   const frameOf = new Map(robot.links.map(({ name, frame }) => [name, frame]));
   return robot.joints.flatMap((joint) => {
     const [frame, leader] = [frameOf.get(joint.child), joints[joint.name]];
@@ -98,7 +103,7 @@ function ledFrames({ robot, joints }: FollowingRobot): [string, { joint: JointSc
   });
 }
 
-/** The pose of a joint's child link in its parent link. */
+/** Returns the pose of a joint's child link in its parent link. */
 export function jointPose(joint: JointScene, position: number): Matrix4 {
   const origin = new Matrix4().compose(
     new Vector3().fromArray(joint.position),

@@ -2,19 +2,19 @@ import { Connection } from "../connection/connection";
 import type { FrameTable, JointControl, PageMessage, Property, RobotMeasured } from "../protocol";
 import { unpackTransforms } from "../connection/transforms";
 import { MovingRobot } from "./moving-robot";
-import { bytesOf, type Recording } from "./recording";
+import { decodeBase64, type Recording } from "./recording";
 
 const GRID = "rviz_default_plugins/Grid";
 const TF = "rviz_default_plugins/TF";
-/** Length of an axis of TF at Marker Scale 1, m. */
+/** Length of TF's axes at Marker Scale 1, m. */
 const AXIS = 0.2;
 
-/** Takes the server's place in an exported page: sends the recorded messages, and moves the robot's joints. */
+/** Replaces the server in an exported page: emits the recorded messages, and moves the robot's joints. */
 export class RecordedConnection extends Connection {
   private controls: readonly JointControl[] = [];
   private robot: MovingRobot | null = null;
   private positions: Record<string, number> = {};
-  private start: Readonly<Record<string, number>> = {};
+  private startPositions: Readonly<Record<string, number>> = {};
 
   constructor(private readonly recording: Recording) {
     super("");
@@ -22,39 +22,42 @@ export class RecordedConnection extends Connection {
 
   override open(): void {
     const { messages, frames } = this.recording;
-    this.become("connected");
+    this.setState("connected");
     for (const message of messages) {
       this.message.emit(message);
       if (message.type === "joints") this.controls = message.controls ?? [];
       if (message.type === "joint_positions") this.positions = { ...message.positions };
       if (message.type === "frame_table") this.prepare(message);
     }
-    this.start = { ...this.positions };
-    for (const frame of frames) this.receiveBytes(bytesOf(frame).buffer);
-    this.moved();
+    this.startPositions = { ...this.positions };
+    for (const frame of frames) this.receiveBytes(decodeBase64(frame).buffer);
+    this.emitPositions();
   }
 
-  /** Moves joints; other requests of the page need a server, and the page shows its own edits by itself. */
+  /** Handles requests that move joints. Others would need a server; the page shows its own edits without one. */
   override send(message: PageMessage): void {
     const { controls } = this;
     if (message.type === "set_joint") this.move({ [message.name]: message.position });
     else if (message.type === "set_joints") this.move(message.positions);
     else if (message.type === "center_joints") this.move(Object.fromEntries(controls.map(({ name, zero }) => [name, zero])));
-    else if (message.type === "randomize_joints") this.move(Object.fromEntries(controls.map((each) => [each.name, anywhere(each)])));
+    else if (message.type === "randomize_joints") this.move(Object.fromEntries(controls.map((control) => [control.name, randomPosition(control)])));
     else if (message.type === "robot_measured") this.fitSizes(message);
   }
 
-  /** Puts the joints where they were when the robot was exported. */
+  /** Moves the joints to their positions at the time of the export. */
   reset(): void {
-    this.positions = { ...this.start };
-    this.moved();
+    this.positions = { ...this.startPositions };
+    this.emitPositions();
   }
 
-  /** Puts the grid on the ground below the robot, in cells of its size, with axes that suit it, as the server of `view` does by default. */
+  /**
+   * Places the grid on the ground below the robot, and fits its cells and TF's axes to the robot's size, as the server
+   * of `view` does by default.
+   */
   private fitSizes({ diagonal, ground }: RobotMeasured): void {
     const { messages, awaits_size, spacing } = this.recording;
     const displays = messages.find((message) => message.type === "tree")?.displays ?? [];
-    const row = (drawn: string, name: string): Property | undefined => displays.find(({ drawing }) => drawing === drawn)?.properties.find((each) => each.name === name);
+    const row = (drawn: string, name: string): Property | undefined => displays.find(({ drawing }) => drawing === drawn)?.properties.find((property) => property.name === name);
     const put = ({ id }: Property, value: number): void => this.message.emit({ type: "property_changed", id, value, options: null });
     const height = row(GRID, "Offset")?.children.find(({ name }) => name === "Z");
     if (height?.value === 0 && ground !== 0) put(height, ground);
@@ -67,7 +70,7 @@ export class RecordedConnection extends Connection {
   private prepare(table: FrameTable): void {
     const { messages, frames, display } = this.recording;
     const robot = messages.find((message) => message.type === "robot_scene" && message.display === display);
-    const recorded = frames.map((frame) => unpackTransforms(bytesOf(frame).buffer)).find((each) => each !== null);
+    const recorded = frames.map((frame) => unpackTransforms(decodeBase64(frame).buffer)).find((each) => each !== null);
     if (robot?.type !== "robot_scene" || !recorded) return;
     const compared = messages.find((message) => message.type === "compared_descriptions");
     const old = compared && messages.find((message) => message.type === "robot_scene" && message.display === compared.old.display);
@@ -80,10 +83,10 @@ export class RecordedConnection extends Connection {
       const wanted = positions[name];
       if (wanted !== undefined && mimic === null) this.positions[name] = Math.min(upper, Math.max(lower, wanted));
     }
-    this.moved();
+    this.emitPositions();
   }
 
-  private moved(): void {
+  private emitPositions(): void {
     const { robot, positions } = this;
     if (!robot) return;
     for (const { name, mimic } of this.controls) if (mimic !== null) positions[name] = robot.position(name, positions);
@@ -92,17 +95,20 @@ export class RecordedConnection extends Connection {
   }
 }
 
-/** The side of a cell for a robot of so large a box, m: `ModelSize.cell` of `viewer/config/model_size.py`. */
+/**
+ * Returns the side of a grid cell for a robot with a bounding box of this diagonal, m: `ModelSize.cell` of
+ * `viewer/config/model_size.py`.
+ */
 function cellFor(diagonal: number): number {
   return 10 ** Math.floor(Math.log10(diagonal * 1.5));
 }
 
-/** The Marker Scale of TF at which axes are seen beside the links: `ModelSize.marker_scale` of the server. */
+/** Returns TF's Marker Scale with which axes can be told from the links: `ModelSize.marker_scale` of the server. */
 function markerScaleFor(diagonal: number, spacing: number): number {
   const axis = Math.min(Math.max(spacing / 2, diagonal / 40), diagonal / 10);
   return Number((axis / AXIS).toPrecision(2));
 }
 
-function anywhere({ lower, upper }: JointControl): number {
+function randomPosition({ lower, upper }: JointControl): number {
   return lower + Math.random() * (upper - lower);
 }

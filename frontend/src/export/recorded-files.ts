@@ -1,5 +1,5 @@
 import type { MeshFiles } from "../scene/meshes/mesh-files";
-import { bytesOf } from "./recording";
+import { decodeBase64 } from "./recording";
 
 const TYPES: Readonly<Record<string, string>> = {
   png: "image/png",
@@ -10,7 +10,7 @@ const TYPES: Readonly<Record<string, string>> = {
   webp: "image/webp",
 };
 
-/** Meshes and textures that are part of the page. */
+/** The meshes and textures that are embedded in the page. */
 export class RecordedFiles implements MeshFiles {
   private readonly blobs = new Map<string, string>();
 
@@ -20,7 +20,7 @@ export class RecordedFiles implements MeshFiles {
     const path = pathOf(url);
     const file = this.files[path];
     if (file === undefined) return Promise.resolve(new Response("no such file", { status: 404 }));
-    return Promise.resolve(new Response(bytesOf(file), { headers: { ETag: path } }));
+    return Promise.resolve(new Response(decodeBase64(file), { headers: { ETag: path } }));
   }
 
   address(url: string): string {
@@ -30,14 +30,14 @@ export class RecordedFiles implements MeshFiles {
     let blob = this.blobs.get(path);
     if (blob === undefined) {
       const type = TYPES[path.slice(path.lastIndexOf(".") + 1).toLowerCase()] ?? "application/octet-stream";
-      blob = URL.createObjectURL(new Blob([bytesOf(file)], { type }));
+      blob = URL.createObjectURL(new Blob([decodeBase64(file)], { type }));
       this.blobs.set(path, blob);
     }
     return blob;
   }
 }
 
-/** `/mesh/...` of an address, wherever the page itself was opened from. */
+/** Returns the `/mesh/...` part of an address, which does not depend on where the page was opened. */
 function pathOf(url: string): string {
   const [path = ""] = url.split("?");
   const at = path.indexOf("/mesh/");

@@ -1,14 +1,17 @@
 import type { ServerMessage } from "../protocol";
 
-/** The messages of the server at the time of the export; `viewer/features/export/html.py` writes them. */
+/** The server's messages at the time of the export, as `viewer/features/export/html.py` writes them. */
 export interface Recording {
   /** Name and version of the program. */
   program: string;
   /** The RobotModel display whose joints can be moved. */
   display: string;
-  /** Whether grid and axes get the size of the robot: none is configured, and the robot is not drawn yet. */
+  /**
+   * Whether grid and axes are to be fitted to the size of the robot: the configuration sets no size, and the robot was
+   * not drawn yet.
+   */
   awaits_size: boolean;
-  /** The usual distance of a link's frame from its parent's, m; null where that is not known. */
+  /** The typical distance of a link's frame from its parent's, m; null if unknown. */
   spacing: number | null;
   messages: ServerMessage[];
   /** Binary frames, base64. */
@@ -21,6 +24,6 @@ export function readRecording(element: HTMLElement): Recording {
   return JSON.parse(element.textContent) as Recording;
 }
 
-export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
+export function decodeBase64(base64: string): Uint8Array<ArrayBuffer> {
   return Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
 }

@@ -16,12 +16,12 @@ const SIDES: readonly Side[] = ["iso", "front", "left", "top"];
 /** The actions of the sidebar. */
 export interface SidebarActions {
   lookFrom(side: Side): void;
-  /** Looks at the whole selection. */
+  /** Moves the camera so that the whole selection is visible. */
   fit(): void;
   reset(): void;
 }
 
-/** Beside the robot of an exported page: its displays, views, and a slider for each joint. */
+/** The column beside the robot of an exported page: displays, views, and a slider for each joint. */
 export class Sidebar {
   readonly element: HTMLElement;
 
@@ -59,7 +59,7 @@ export class Sidebar {
     );
   }
 
-  /** The differences of two descriptions, where the file has two. */
+  /** Returns the differences of the two descriptions, if the file has two. */
   private comparison(): HTMLElement | null {
     const { comparison } = this.session;
     if (comparison.compared === null) return null;
@@ -73,7 +73,7 @@ export class Sidebar {
     const robot = displays.find(({ id }) => id === this.display);
     const boxes = robot ? [this.rowBox(robot, "Visual Enabled", words.visual), this.rowBox(robot, "Collision Enabled", words.collision)] : [];
     const others = displays.filter(({ id, isGroup, supported }) => id !== this.display && !isGroup && supported && !this.session.comparison.isOld(id));
-    return [...boxes, ...others.map((each) => this.displayBox(each))].filter((box) => box !== null);
+    return [...boxes, ...others.map((other) => this.displayBox(other))].filter((box) => box !== null);
   }
 
   private rowBox(robot: DisplayState, row: string, label: string): HTMLElement | null {

@@ -12,7 +12,7 @@ const SIDES: Readonly<Record<Side, { Yaw: number; Pitch: number }>> = {
   iso: { Yaw: Math.PI / 4, Pitch: 0.5 },
 };
 
-/** Looks at all of the robot from a side. */
+/** Looks at the whole robot from a side. */
 export function lookFrom(side: Side, session: Session, stage: Stage): void {
   session.view.setClass(ORBIT);
   session.view.update(SIDES[side]);

@@ -1,4 +1,4 @@
-/** An icon for each class of displays, by the class's name without its package. */
+/** The icon of each display class, by the class's name without its package. */
 export const DISPLAY_PATHS = {
   AccelStamped: "M2 13.5L9 6.5M6 6.3h3.2v3.2M8.5 11.5l5-5M10.6 3.2h3.2v3.2",
   Axes: "M6 10V2.5M4.3 4.2L6 2.5l1.7 1.7M6 10h7.5M11.8 8.3l1.7 1.7-1.7 1.7M6 10l-3.5 3.5M2.5 11.2v2.3h2.3",

@@ -2,7 +2,7 @@ import { DISPLAY_PATHS, type DisplayIcon } from "./displays";
 import { MODELLING_PATHS } from "./modelling";
 import { SHELL_PATHS } from "./shell";
 
-/** Our own icons, 16 x 16, drawn with lines in the colour of the text around them. */
+/** Our own icons, 16 x 16, drawn with lines in the current text colour. */
 const PATHS = {
   ...DISPLAY_PATHS,
   ...SHELL_PATHS,
@@ -90,11 +90,11 @@ export function icon(name: IconName, className = ""): SVGSVGElement {
   return svg;
 }
 
-/** The icon of a class of displays, such as `rviz_default_plugins/Grid`. */
+/** Returns the icon of a display class, such as `rviz_default_plugins/Grid`. */
 export function displayIcon(cls: string): IconName {
   const name = cls.split("/").pop() ?? cls;
   return name in DISPLAY_PATHS ? (name as DisplayIcon) : "unknown";
 }
 
-/** The sign of a status level or severity. */
+/** The icon of each status level and severity. */
 export const LEVEL_ICONS = { ok: "check", loading: "clock", warn: "warn", warning: "warn", error: "error", info: "info" } as const;

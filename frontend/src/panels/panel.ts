@@ -2,13 +2,13 @@ import type { IconName } from "../icons";
 
 export type PanelId = "plot" | "topics" | "graph" | "parameters" | "log" | "teleop" | "displays" | "scene" | "joint-table" | "source" | "diagram" | "links" | "views" | "tool-properties" | "selection" | "time" | "transformation" | "navigation" | "joints" | "voice" | "diagnostics" | "world" | "comparison" | "editing";
 
-/** A panel of the dock: made once, shown, hidden and moved by the user. */
+/** A panel of the dock, created once; the user shows, hides and moves it. */
 export interface Panel {
   readonly id: PanelId;
   readonly icon: IconName;
   readonly element: HTMLElement;
-  /** The user opened it; it may be behind another. */
+  /** Called when the user opened the panel; another panel may be in front of it. */
   opened?(): void;
-  /** The user closed it. */
+  /** Called when the user closed the panel. */
   closed?(): void;
 }

@@ -1,19 +1,21 @@
 import { Color, Matrix4, Mesh, PlaneGeometry, ShaderMaterial } from "three";
 import type { Theme } from "../state/theme";
 
-/** Squares along each side in which colours are computed; between their corners no user sees a difference. */
+/**
+ * The number of squares along each side; colours are computed at their corners and interpolated, which is not visible.
+ */
 const SQUARES = 24;
 /** The render order of the backdrop: drawn before everything else. */
-const FIRST = -1000;
+const RENDER_ORDER = -1000;
 
-/** 0xrrggbb; `ground` far below. */
+/** Colours as 0xrrggbb; `ground` is the colour straight down. */
 interface Colors {
   readonly zenith: number;
   readonly horizon: number;
   readonly ground: number;
 }
 
-/** Of medium brightness where robots stand, so that both black and white ones stand out. */
+/** The colours are of medium brightness where robots stand, so that both black and white robots stand out. */
 const COLORS: Readonly<Record<Theme, Colors>> = {
   light: { zenith: 0xbccbda, horizon: 0xeef2f5, ground: 0xaeb7c0 },
   dark: { zenith: 0x39424d, horizon: 0x77828e, ground: 0x545d67 },
@@ -38,8 +40,8 @@ const FRAGMENT = /* glsl */ `
 `;
 
 /**
- * A sky and a ground behind everything, which meet in a bright horizon. Colours are computed at few points, so without a
- * graphics card they cost little more than a background of one colour.
+ * A sky and a ground behind everything, which meet at a bright horizon. Colours are computed at few points, so that
+ * without a GPU they cost little more than a plain background.
  */
 export class Backdrop {
   readonly root: Mesh<PlaneGeometry, ShaderMaterial>;
@@ -54,7 +56,7 @@ export class Backdrop {
   constructor() {
     const style = { vertexShader: VERTEX, fragmentShader: FRAGMENT, depthTest: false, depthWrite: false };
     this.root = new Mesh(new PlaneGeometry(2, 2, SQUARES, SQUARES), new ShaderMaterial({ ...style, uniforms: this.uniforms }));
-    this.root.renderOrder = FIRST;
+    this.root.renderOrder = RENDER_ORDER;
     this.root.frustumCulled = false;
     this.root.visible = false;
     this.root.onBeforeRender = (_renderer, _scene, camera) => {

@@ -1,62 +1,68 @@
 import { Box3, DataTexture, Group, LinearFilter, Mesh, MeshBasicMaterial, PlaneGeometry, Vector3 } from "three";
 import { samplesOf } from "./robot/surface-samples";
 
-/** Texels along each side of the image of the shadow. */
+/** Texels along each side of the shadow's image. */
 const TEXELS = 96;
-/** The width of the ground that the image shows, in widths of the robot on it. */
-const WIDER = 1.7;
-/** How dark it is at most. */
-const DARKEST = 0.62;
-/** At this height above the ground, in sizes of the robot on it, a surface shades it less by a factor of e. */
+/** The width of the ground that the image covers, in widths of the robot. */
+const GROUND_WIDTHS = 1.7;
+/** The maximum darkness. */
+const MAX_DARKNESS = 0.62;
+/**
+ * The heights above the ground, in sizes of the robot, over which the shade of a surface decreases by a factor of e:
+ * near the ground, and far from it.
+ */
 const [NEAR, FAR] = [0.05, 0.35];
-/** How much of the shade of a surface comes from afar. */
-const FROM_AFAR = 0.35;
-/** Texels to each side that shade spreads, as often as given. */
-const [SPREAD, TIMES] = [2, 3];
-/** Drawn first of the transparent objects, so that lines on the ground cover it. */
-const FIRST = -1;
+/** The weight of the shade from far surfaces. */
+const FAR_WEIGHT = 0.35;
+/** The radius of the blur in texels, and the number of its passes. */
+const [BLUR_RADIUS, BLUR_PASSES] = [2, 3];
+/** The shadow is drawn first among transparent objects, so that lines on the ground cover it. */
+const RENDER_ORDER = -1;
 
 const place = new Vector3();
 
 /**
- * The shade that a robot casts on the ground by being there, as on a cloudy day. It is computed of a few points of each
- * surface, and only where the robot moved: no light and no image of the scene is needed for it.
+ * The ambient shadow of a robot on the ground, as on a cloudy day. It is computed from a few points of each surface,
+ * and only when the robot moved, without a light or a further rendering of the scene.
  */
 export class ContactShadow {
   readonly root = new Group();
-  /** The part of the ground that the image of the shadow is on. */
+  /** The plane that shows the image of the shadow. */
   readonly ground: Mesh<PlaneGeometry, MeshBasicMaterial>;
   private readonly pixels = new Uint8Array(4 * TEXELS * TEXELS);
   private readonly texture = new DataTexture(this.pixels, TEXELS, TEXELS);
   private shade = new Float32Array(TEXELS * TEXELS);
   private spare = new Float32Array(TEXELS * TEXELS);
-  private fallen = NaN;
+  private lastKey = NaN;
 
   constructor() {
     this.texture.magFilter = this.texture.minFilter = LinearFilter;
     const style = { map: this.texture, transparent: true, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
     this.ground = new Mesh(new PlaneGeometry(), new MeshBasicMaterial(style));
-    this.ground.renderOrder = FIRST;
+    this.ground.renderOrder = RENDER_ORDER;
     this.root.add(this.ground);
   }
 
-  /** Falls from meshes, which have their places, on a ground of this height in the fixed frame, m. */
-  fall(meshes: readonly Mesh[], height: number): void {
-    const key = meshes.reduce((sum, { matrixWorld }, i) => matrixWorld.elements.reduce((all, each, k) => all + each * (i + k + 1), sum), height);
-    if (key === this.fallen) return;
-    this.fallen = key;
+  /**
+   * Computes the shadow of meshes, whose world matrices must be current, on a ground at this height in the fixed frame,
+   * m.
+   */
+  update(meshes: readonly Mesh[], height: number): void {
+    const key = meshes.reduce((sum, { matrixWorld }, i) => matrixWorld.elements.reduce((all, element, k) => all + element * (i + k + 1), sum), height);
+    if (key === this.lastKey) return;
+    this.lastKey = key;
     const box = new Box3();
     for (const mesh of meshes) box.expandByObject(mesh);
     if (box.isEmpty()) return void (this.ground.visible = false);
     const [middle, size] = [box.getCenter(new Vector3()), box.getSize(new Vector3())];
-    const width = Math.max(WIDER * Math.max(size.x, size.y), size.z * (WIDER - 1));
+    const width = Math.max(GROUND_WIDTHS * Math.max(size.x, size.y), size.z * (GROUND_WIDTHS - 1));
     this.ground.visible = true;
     this.ground.position.set(middle.x, middle.y, height);
     this.ground.scale.setScalar(width);
     this.shade.fill(0);
     for (const mesh of meshes) this.add(mesh, middle, width, height, size.length());
-    for (let i = 0; i < TIMES; i++) this.spread();
-    this.shade.forEach((shade, i) => (this.pixels[4 * i + 3] = 255 * DARKEST * (1 - Math.exp(-shade))));
+    for (let i = 0; i < BLUR_PASSES; i++) this.blur();
+    this.shade.forEach((shade, i) => (this.pixels[4 * i + 3] = 255 * MAX_DARKNESS * (1 - Math.exp(-shade))));
     this.texture.needsUpdate = true;
   }
 
@@ -70,18 +76,18 @@ export class ContactShadow {
       const x = Math.floor(((place.x - middle.x) / width + 0.5) * TEXELS);
       const y = Math.floor(((place.y - middle.y) / width + 0.5) * TEXELS);
       const at = y * TEXELS + x;
-      this.shade[at] = (this.shade[at] ?? 0) + texels * (Math.exp(-above / NEAR) + FROM_AFAR * Math.exp(-above / FAR));
+      this.shade[at] = (this.shade[at] ?? 0) + texels * (Math.exp(-above / NEAR) + FAR_WEIGHT * Math.exp(-above / FAR));
     }
   }
 
-  /** Takes the mean over a square around each texel. */
-  private spread(): void {
+  /** Replaces each texel by the mean of a square around it. */
+  private blur(): void {
     for (const step of [1, TEXELS]) {
       const [from, to] = [this.shade, this.spare];
       for (let i = 0; i < from.length; i++) {
         let sum = 0;
-        for (let k = -SPREAD; k <= SPREAD; k++) sum += from[i + k * step] ?? 0;
-        to[i] = sum / (2 * SPREAD + 1);
+        for (let k = -BLUR_RADIUS; k <= BLUR_RADIUS; k++) sum += from[i + k * step] ?? 0;
+        to[i] = sum / (2 * BLUR_RADIUS + 1);
       }
       [this.shade, this.spare] = [to, from];
     }

@@ -3,16 +3,16 @@ import { strings } from "../strings";
 import type { Stage } from "./stage";
 import type { PointerButton, ToolEvent } from "./tools/tool";
 
-/** A press that moves less than this is a click, pixels. */
+/** Pixels; a press that moves less than this is a click. */
 const CLICK_SLOP = 4;
 const LINE_PX = 40;
 const KEY_PX = 20;
 const ZOOM_NOTCH = 120;
-/** The wheel delta that changes a distance by all of it: so much finger movement zooms. */
+/** The wheel delta that corresponds to a pinch which changes the distance by its whole. */
 const PINCH_UNIT = 1000;
 const BUTTONS: readonly PointerButton[] = ["left", "middle", "right"];
 
-/** Turns what mouse, fingers and arrow keys do on the canvas into events for the tool in hand. */
+/** Converts input on the canvas by mouse, fingers and arrow keys into events for the active tool. */
 export class Controls {
   private readonly pointers = new Map<number, { x: number; y: number }>();
   private last = { x: 0, y: 0 };
@@ -22,29 +22,29 @@ export class Controls {
   constructor(
     private readonly stage: Stage,
     private readonly view: ViewState,
-    private readonly tell: (event: ToolEvent) => void,
+    private readonly emit: (event: ToolEvent) => void,
   ) {
     const { canvas } = stage.viewport;
     canvas.tabIndex = 0;
-    // Screen readers leave its keys to it, and read out its list of keys.
+    // With this role, screen readers pass its keys on and read out the list of keys.
     canvas.setAttribute("role", "application");
     canvas.setAttribute("aria-label", strings.scene.keys);
-    canvas.addEventListener("pointerdown", (event) => this.pressed(event));
-    canvas.addEventListener("pointermove", (event) => this.moved(event));
-    canvas.addEventListener("pointerup", (event) => this.released(event, true));
-    canvas.addEventListener("pointercancel", (event) => this.released(event, false));
-    canvas.addEventListener("pointerleave", (event) => this.left(event));
-    canvas.addEventListener("wheel", (event) => this.wheeled(event), { passive: false });
+    canvas.addEventListener("pointerdown", (event) => this.onPointerDown(event));
+    canvas.addEventListener("pointermove", (event) => this.onPointerMove(event));
+    canvas.addEventListener("pointerup", (event) => this.onPointerEnd(event, true));
+    canvas.addEventListener("pointercancel", (event) => this.onPointerEnd(event, false));
+    canvas.addEventListener("pointerleave", (event) => this.onPointerLeave(event));
+    canvas.addEventListener("wheel", (event) => this.onWheel(event), { passive: false });
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-    canvas.addEventListener("keydown", (event) => this.keyed(event));
+    canvas.addEventListener("keydown", (event) => this.onKeyDown(event));
   }
 
-  /** The position of the pointer over the canvas; null while it is elsewhere. */
-  get place(): { x: number; y: number } | null {
+  /** The position of the pointer over the canvas; null while the pointer is elsewhere. */
+  get position(): { x: number; y: number } | null {
     return this.isOver ? this.last : null;
   }
 
-  private pressed(event: PointerEvent): void {
+  private onPointerDown(event: PointerEvent): void {
     const { canvas } = this.stage.viewport;
     if (event.button === 1) event.preventDefault();
     canvas.focus({ preventScroll: true });
@@ -53,57 +53,57 @@ export class Controls {
     this.travelled = this.pointers.size > 1 ? CLICK_SLOP : 0;
     this.isOver = true;
     this.last = { x: event.offsetX, y: event.offsetY };
-    this.tell(this.eventOf("down", event));
+    this.emit(this.eventOf("down", event));
   }
 
-  private moved(event: PointerEvent): void {
+  private onPointerMove(event: PointerEvent): void {
     const pointer = this.pointers.get(event.pointerId);
-    const spread = this.spread();
+    const spread = this.fingerDistance();
     if (pointer) {
       this.travelled += Math.hypot(event.clientX - pointer.x, event.clientY - pointer.y);
       pointer.x = event.clientX;
       pointer.y = event.clientY;
     }
-    const told = this.eventOf("move", event);
+    const toolEvent = this.eventOf("move", event);
     this.isOver = true;
     this.last = { x: event.offsetX, y: event.offsetY };
-    if (told.dx === 0 && told.dy === 0) return;
-    if (this.pointers.size > 1) this.pinched(told, spread);
-    else this.tell(told);
+    if (toolEvent.dx === 0 && toolEvent.dy === 0) return;
+    if (this.pointers.size > 1) this.pinch(toolEvent, spread);
+    else this.emit(toolEvent);
   }
 
-  /** Two fingers: each moves the view half, and their distance zooms. */
-  private pinched(told: ToolEvent, before: number): void {
-    const { x, y, dx, dy } = told;
+  /** Handles two fingers: each moves the view by half its motion, and a change of their distance zooms. */
+  private pinch(event: ToolEvent, before: number): void {
+    const { x, y, dx, dy } = event;
     const half = { dx: dx / 2, dy: dy / 2, x: x - dx, y: y - dy };
     this.view.drag({ ...this.stage.viewport.size, ...half, left: false, middle: true, right: false, shift: false });
-    const after = Math.max(1, this.spread());
+    const after = Math.max(1, this.fingerDistance());
     if (before > 0) this.view.wheel((1 - before / after) * PINCH_UNIT, false);
   }
 
-  private released(event: PointerEvent, complete: boolean): void {
+  private onPointerEnd(event: PointerEvent, complete: boolean): void {
     if (!this.pointers.delete(event.pointerId)) return;
     const click = complete && this.travelled < CLICK_SLOP;
-    this.tell({ ...this.eventOf("up", event), click });
+    this.emit({ ...this.eventOf("up", event), click });
   }
 
-  private left(event: PointerEvent): void {
+  private onPointerLeave(event: PointerEvent): void {
     this.isOver = false;
-    if (this.pointers.size === 0) this.tell(this.eventOf("leave", event));
+    if (this.pointers.size === 0) this.emit(this.eventOf("leave", event));
   }
 
-  /** Distance between the first two fingers, pixels; 0 with fewer. */
-  private spread(): number {
+  /** Returns the distance between the first two fingers, pixels; 0 with fewer. */
+  private fingerDistance(): number {
     const [a, b] = [...this.pointers.values()];
     return a && b ? Math.hypot(a.x - b.x, a.y - b.y) : 0;
   }
 
-  private wheeled(event: WheelEvent): void {
+  private onWheel(event: WheelEvent): void {
     event.preventDefault();
-    // Browsers turn the wheel sideways while Shift is held.
+    // Browsers report a horizontal wheel while Shift is held.
     const amount = event.deltaY !== 0 ? event.deltaY : event.deltaX;
     const wheel = -amount * (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? LINE_PX : 1);
-    this.tell({ ...this.eventOf("wheel", event), wheel });
+    this.emit({ ...this.eventOf("wheel", event), wheel });
   }
 
   private eventOf(type: ToolEvent["type"], event: MouseEvent): ToolEvent {
@@ -127,7 +127,7 @@ export class Controls {
     };
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { size } = this.stage.viewport;
     const turn = (dx: number, dy: number): void => {

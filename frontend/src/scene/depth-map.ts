@@ -2,7 +2,7 @@ import { DepthTexture, ShaderMaterial, UnsignedIntType, Vector2, Vector3, WebGLR
 import { SCREEN_VERTEX, ScreenQuad } from "./objects/screen-quad";
 import type { Viewport } from "./viewport";
 
-/** A surface must be nearer than a point by this part of its distance to hide it. */
+/** A surface hides a point if it is nearer by more than this share of the point's distance. */
 const TOLERANCE = 0.01;
 const FRAGMENT = /* glsl */ `
   uniform sampler2D depths;
@@ -13,14 +13,14 @@ const FRAGMENT = /* glsl */ `
   }
 `;
 
-/** The distance of the nearest surface at each pixel of the scene: anything behind it is hidden. */
+/** The distance of the nearest surface at each pixel of the scene; anything behind it is hidden. */
 export class DepthMap {
   private readonly pixels: Uint8Array;
   private readonly size: Vector2;
   private readonly camera: Camera;
   private readonly at = new Vector3();
 
-  /** Draws the scene once more, unseen; the camera must be aimed. Transparent objects hide nothing. */
+  /** Renders the depths of the scene off screen; the camera must be up to date. Transparent objects hide nothing. */
   constructor({ renderer, scene, camera, size }: Viewport) {
     this.camera = camera;
     this.size = new Vector2(size.width, size.height).floor();
@@ -50,29 +50,29 @@ export class DepthMap {
     packed.dispose();
   }
 
-  /** Whether nothing hides a point, in normalized device coordinates (-1 to 1, y up). */
-  isSeen(x: number, y: number, z: number): boolean {
+  /** Whether a point, in normalized device coordinates (-1 to 1, y up), is not hidden. */
+  isVisible(x: number, y: number, z: number): boolean {
     const column = Math.round(((x + 1) / 2) * this.size.x - 0.5);
     const row = Math.round(((y + 1) / 2) * this.size.y - 0.5);
-    const distance = this.distance(z);
-    // Points on an edge fall beside their surface as often as on it.
+    const distance = this.toDistance(z);
+    // Check the neighbours, too: points on an edge fall next to their surface as often as on it.
     for (let dy = -1; dy <= 1; dy++) {
       for (let dx = -1; dx <= 1; dx++) {
-        if (this.surface(column + dx, row + dy) >= distance * (1 - TOLERANCE)) return true;
+        if (this.surfaceDistance(column + dx, row + dy) >= distance * (1 - TOLERANCE)) return true;
       }
     }
     return false;
   }
 
-  /** The distance from the camera to the nearest surface at a pixel, m along the line of sight. */
-  private surface(column: number, row: number): number {
+  /** Returns the distance from the camera to the nearest surface at a pixel, m along the viewing axis. */
+  private surfaceDistance(column: number, row: number): number {
     if (column < 0 || row < 0 || column >= this.size.x || row >= this.size.y) return 0;
     const first = (row * this.size.x + column) * 4;
     const [a = 0, b = 0, c = 0, d = 0] = this.pixels.subarray(first, first + 4);
-    return this.distance(2 * ((a + b / 255 + c / 65025 + d / 16581375) / 255) - 1);
+    return this.toDistance(2 * ((a + b / 255 + c / 65025 + d / 16581375) / 255) - 1);
   }
 
-  private distance(z: number): number {
+  private toDistance(z: number): number {
     return -this.at.set(0, 0, z).applyMatrix4(this.camera.projectionMatrixInverse).z;
   }
 }

@@ -1,8 +1,8 @@
 import { Quaternion, Vector3, type Matrix4 } from "three";
-import type { Described } from "./picking";
+import type { DescriptionRow } from "./picking";
 
-/** The rows `Position` and `Orientation` of RViz's Selection panel. */
-export function describedPose(pose: Matrix4): Described[] {
+/** Returns the rows `Position` and `Orientation` of RViz's Selection panel. */
+export function describedPose(pose: Matrix4): DescriptionRow[] {
   const [position, orientation] = [new Vector3(), new Quaternion()];
   pose.decompose(position, orientation, new Vector3());
   const { x, y, z } = position;
@@ -12,8 +12,8 @@ export function describedPose(pose: Matrix4): Described[] {
   ];
 }
 
-/** A row with a row for each number below it, and all of them in its own value. */
-export function describedNumbers(name: string, numbers: Readonly<Record<string, number>>): Described {
+/** Returns a row whose value lists all numbers, with one row for each number below it. */
+export function describedNumbers(name: string, numbers: Readonly<Record<string, number>>): DescriptionRow {
   const children = Object.entries(numbers).map(([key, value]) => ({ name: key, value: String(Number(value.toPrecision(6))) }));
   return { name, value: children.map(({ value }) => value).join("; "), children };
 }

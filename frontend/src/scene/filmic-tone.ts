@@ -1,12 +1,15 @@
 import type { Material } from "three";
 
-/** What a screen shows of light is this power of it. */
+/** The exponent between displayed values and light. */
 const GAMMA = 2.2;
-/** Light up to here is darkened as film does, which deepens shades; from `SHOULDER` on it goes towards white ever more slowly. */
+/**
+ * Light up to `TOE` is darkened as on film, which deepens shades; from `SHOULDER` on it approaches white ever more
+ * slowly.
+ */
 const TOE = 0.22;
 const TOE_POWER = 1.12;
 const SHOULDER = 0.532;
-/** How fast it does, so that the curve has no corner. */
+/** The rate of that approach, chosen so that the curve is smooth at the shoulder. */
 const ROLL_OFF = 1 / (1 - SHOULDER);
 
 const TONE = /* glsl */ `
@@ -20,8 +23,8 @@ const TONE = /* glsl */ `
 `;
 
 /**
- * Has a surface shown as film would: what lamps light strongly keeps its shape and shades are deep, and shades between
- * stay as they are. It is computed where surfaces are, so marks, lines, grids and backgrounds keep their exact colours.
+ * Makes a material's light look as on film: brightly lit surfaces keep their shape, shadows are deep, and tones between
+ * stay as they are. Only surfaces are affected, so that marks, lines, grids and backgrounds keep their exact colours.
  */
 export function filmic<T extends Material>(material: T): T {
   material.onBeforeCompile = (shader) => {

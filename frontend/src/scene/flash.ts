@@ -6,16 +6,16 @@ import type { Viewport } from "./viewport";
 
 const COLOR = 0xff9d3c;
 const FILL = 0.55;
-const LASTS_MS = 1600;
-/** New meshes may take a moment; the flash waits for a part of its time. */
+const DURATION_MS = 1600;
+/** ms at full strength at the start, because new meshes may take a moment to load. */
 const FULL_MS = 600;
 
-/** Lights up the links that an edit changed, or whose joints it moved, for a moment. */
+/** Highlights for a moment the links that an edit changed, or whose joints it moved. */
 export class Flash {
   private readonly outline: Outline;
   private links: { display: string; names: ReadonlySet<string>; startMs: number }[] = [];
 
-  /** @param objectsOf what draws a link of a display. */
+  /** @param objectsOf - returns the objects that draw a link of a display. */
   constructor(
     viewport: Viewport,
     session: Session,
@@ -31,14 +31,14 @@ export class Flash {
     });
   }
 
-  /** Draws over the frame that was just rendered, and asks for the next one while it lasts. */
+  /** Draws over the frame just rendered, and requests the next frame while the highlight lasts. */
   render(): void {
     if (this.links.length === 0) return;
     const now = performance.now();
-    this.links = this.links.filter(({ startMs }) => now - startMs < LASTS_MS);
+    this.links = this.links.filter(({ startMs }) => now - startMs < DURATION_MS);
     const objects = this.links.flatMap(({ display, names }) => [...names].flatMap((name) => this.objectsOf(display, name)));
     const newest = Math.max(...this.links.map(({ startMs }) => startMs));
-    this.outline.strength = Math.min(1, Math.max(0, (LASTS_MS - (now - newest)) / (LASTS_MS - FULL_MS)));
+    this.outline.strength = Math.min(1, Math.max(0, (DURATION_MS - (now - newest)) / (DURATION_MS - FULL_MS)));
     this.outline.set(objects);
     this.outline.render();
     this.outline.set([]);

@@ -3,14 +3,14 @@ import type { ViewState } from "../state/view";
 import { number } from "../state/views/view-controller";
 import { unitSphere } from "./objects/geometries";
 
-/** The disc at the focal point, seen only while the view is being dragged. */
+/** The disc at the focal point, visible only while the view is being dragged. */
 export class FocalShape {
   readonly root = new Mesh(
     unitSphere,
     new MeshLambertMaterial({ color: 0xffff00, opacity: 0.5, transparent: true, depthWrite: false }),
   );
 
-  /** Whether it is to be seen; views without a focal point have none. */
+  /** Whether the disc is to be visible, provided the view has a focal point. */
   shown = false;
 
   constructor() {

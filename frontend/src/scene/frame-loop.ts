@@ -1,23 +1,26 @@
 import { Signal } from "../signal";
 
-/** Frames may come this much early and still count as keeping to the rate: screens do not tick evenly. */
+/** Frames may be this much early and still count as in time, because screens do not refresh evenly. */
 const TOLERANCE_MS = 4;
-/** With nothing drawn for this long the scene counts as idle. */
+/** The scene counts as idle after this time without a frame. */
 const IDLE_AFTER_MS = 600;
-/** A frame that comes this long after it was due was held up by the ones before it: most of a tick of the screen. */
+/** A frame this late was delayed by the frames before it: most of a refresh interval of the screen. */
 const LATE_MS = 12;
-/** So many more late frames than timely ones make moving images coarser. */
+/** This many more late frames than timely ones make moving frames coarser. */
 const LATE_FRAMES = 4;
-/** So many frames at the beginning do not show the pace: they wait for programs that are compiled. */
+/** The first frames are not judged: they wait for shaders to compile. */
 const FIRST_FRAMES = 6;
-/** So many timely frames without a late one let them be finer again; twice as many the next time. */
+/** This many timely frames in a row make moving frames finer again; the number doubles each time. */
 const TIMELY_FRAMES = 300;
-/** After a coarse frame, how long nothing must move until a fine one is drawn. */
+/** After a coarse frame, a fine one is drawn once nothing has changed for this time. */
 const STILL_AFTER_MS = 250;
 
-/** The detail of a frame: with or without antialiasing, and the share of the canvas's pixels along a side. */
+/**
+ * The detail of a frame: whether it is antialiased, and its resolution as a share of the canvas's pixels along each
+ * side.
+ */
 export interface Detail {
-  /** Of a moving image that the machine draws slowly: details that no user sees may be left out. */
+  /** Whether the frame is part of a motion that the machine draws slowly, so that details may be omitted. */
   readonly moving: boolean;
   readonly smooth: boolean;
   readonly share: number;
@@ -32,91 +35,92 @@ const DETAILS: readonly Detail[] = [
 ];
 
 /**
- * Draws on demand: nothing while nothing changes, never more often than the rate. Where the machine does not keep up,
- * as software renderers, moving frames are drawn more and more coarsely, and a fine one follows when the scene is still.
+ * Draws frames on demand: none while nothing changes, and never more than `rate`. On machines that are too slow, such
+ * as those with software renderers, moving frames become coarser step by step, and a fine frame follows when the scene
+ * is still.
  *
- * Content beside the scene with a rate of its own, as images of cameras, changes with the frames: browsers put
- * the whole page together for each change, which without a GPU costs as much as the scene does.
+ * Content outside the scene with a rate of its own, such as camera images, is updated in step with frames: browsers
+ * compose the whole page for each change, which without a GPU costs as much as the scene.
  */
 export class FrameLoop {
   /** A frame was drawn. */
   readonly drawn = new Signal();
-  /** One that was due: whether the ones before it held it up. */
+  /** A due frame was judged; true if the frames before it made it late. */
   readonly judged = new Signal<boolean>();
-  /** Largest number of frames a second. */
+  /** Maximum number of frames per second. */
   rate = 30;
   private requestedAt: number | null = null;
-  private readonly besides = new Set<() => void>();
-  private ticks = false;
-  /** When the next frame may be drawn. */
+  private readonly scheduled = new Set<() => void>();
+  private isTickRequested = false;
+  /** The earliest time of the next frame. */
   private dueMs = -Infinity;
   private lateness = 0;
-  private timely = 0;
+  private timelyCount = 0;
   private patience = TIMELY_FRAMES;
-  /** In `DETAILS`, of moving images. */
-  private level = 0;
-  private lastIsFine = false;
+  /** The index in `DETAILS` for moving frames. */
+  private detailLevel = 0;
+  private wasLastFine = false;
   private stillTimer = 0;
   private drawnAt = -Infinity;
-  private recent: number[] = [];
-  private count = 0;
+  private recentTimes: number[] = [];
+  private frameCount = 0;
 
   /**
-   * @param held whether nothing is drawn before `release`: to a software renderer a frame of an empty scene is as much
-   * work as one of a robot, which would be drawn later by that.
+   * @param held - whether to draw nothing before `release`. For a software renderer, a frame of an empty scene is as
+   * much work as one of a robot, and would delay it.
    */
   constructor(
     private readonly draw: (detail: Detail) => void,
     private held = false,
   ) {}
 
-  /** Nothing changed since the last frame, beside the scene neither, and that was a fine one. */
+  /** Whether nothing has changed since the last frame, in the scene or outside it, and that frame was a fine one. */
   get settled(): boolean {
-    return this.requestedAt === null && this.besides.size === 0 && this.lastIsFine;
+    return this.requestedAt === null && this.scheduled.size === 0 && this.wasLastFine;
   }
 
-  /** Draws moving images coarsely from the first one on, as the renderer is known to be slow. */
+  /** Draws moving frames coarsely from the first one on, because the renderer is known to be slow. */
   expectSlow(): void {
-    this.level = Math.max(this.level, 1);
+    this.detailLevel = Math.max(this.detailLevel, 1);
   }
 
   get framesDrawn(): number {
-    return this.count;
+    return this.frameCount;
   }
 
-  /** Frames drawn in the last second, or null when the scene is idle. */
+  /** Returns the number of frames in the last second; null while the scene is idle. */
   framesPerSecond(nowMs: number): number | null {
-    this.recent = this.recent.filter((at) => nowMs - at < 1000);
-    return nowMs - this.drawnAt > IDLE_AFTER_MS ? null : this.recent.length;
+    this.recentTimes = this.recentTimes.filter((at) => nowMs - at < 1000);
+    return nowMs - this.drawnAt > IDLE_AFTER_MS ? null : this.recentTimes.length;
   }
 
-  /** There is something to draw. */
+  /** Starts drawing, now that there is something to draw. */
   release(): void {
     this.held = false;
-    if (this.requestedAt !== null) this.askForTick();
+    if (this.requestedAt !== null) this.requestTick();
   }
 
-  /** Draws at once what a canvas showed before its size changed, which emptied it: it would flicker until the next frame. */
+  /** Redraws immediately after the canvas was resized, which clears it: it would flicker until the next frame. */
   redraw(detail: Detail): void {
     if (!this.held) this.draw(detail);
   }
 
-  /** Something changed: a frame is due. */
+  /** Requests a frame because something changed. */
   invalidate(): void {
     if (this.requestedAt !== null) return;
     this.requestedAt = performance.now();
-    this.askForTick();
+    this.requestTick();
   }
 
-  /** Has something shown beside the scene when the next frame is due; the scene is not drawn for it. */
-  beside(show: () => void): void {
-    this.besides.add(show);
-    this.askForTick();
+  /** Updates something outside the scene when the next frame is due; the scene is not drawn for it. */
+  schedule(show: () => void): void {
+    this.scheduled.add(show);
+    this.requestTick();
   }
 
-  private askForTick(): void {
-    if (this.ticks) return;
-    this.ticks = true;
+  private requestTick(): void {
+    if (this.isTickRequested) return;
+    this.isTickRequested = true;
     requestAnimationFrame(this.tick);
   }
 
@@ -124,53 +128,53 @@ export class FrameLoop {
     const now = performance.now();
     const interval = 1000 / Math.max(1, this.rate);
     const due = this.dueMs;
-    this.ticks = false;
+    this.isTickRequested = false;
     if (now < due - TOLERANCE_MS) {
-      this.askForTick();
+      this.requestTick();
       return;
     }
-    // One that comes late does not delay those after it, or each would cost a frame.
+    // A late frame must not delay the frames after it, or each late frame would cost one.
     this.dueMs = Math.max(due, now - interval) + interval;
-    const besides = [...this.besides];
-    this.besides.clear();
+    const besides = [...this.scheduled];
+    this.scheduled.clear();
     for (const show of besides) show();
     if (this.requestedAt === null || this.held) return;
-    if (this.count >= FIRST_FRAMES) this.judge(now - Math.max(this.requestedAt, due));
+    if (this.frameCount >= FIRST_FRAMES) this.judge(now - Math.max(this.requestedAt, due));
     this.requestedAt = null;
-    // The first frame must come soon.
-    const level = Math.max(this.level, this.count > 0 ? 0 : 1);
+    // The first frame must appear quickly.
+    const level = Math.max(this.detailLevel, this.frameCount > 0 ? 0 : 1);
     this.paint(now, level);
     clearTimeout(this.stillTimer);
-    if (level > 0) this.stillTimer = window.setTimeout(() => this.stand(), STILL_AFTER_MS);
+    if (level > 0) this.stillTimer = window.setTimeout(() => this.paintStill(), STILL_AFTER_MS);
   };
 
   private judge(delay: number): void {
     const late = delay > LATE_MS;
     this.judged.emit(late);
     this.lateness = Math.max(0, this.lateness + (late ? 1 : -1));
-    this.timely = late ? 0 : this.timely + 1;
-    if (this.lateness >= LATE_FRAMES) this.move(1);
-    else if (this.timely >= this.patience && this.level > 0) {
+    this.timelyCount = late ? 0 : this.timelyCount + 1;
+    if (this.lateness >= LATE_FRAMES) this.changeLevel(1);
+    else if (this.timelyCount >= this.patience && this.detailLevel > 0) {
       this.patience *= 2;
-      this.move(-1);
+      this.changeLevel(-1);
     }
   }
 
-  private move(coarser: number): void {
-    this.level = Math.min(this.level + coarser, DETAILS.length - 1);
-    this.lateness = this.timely = 0;
+  private changeLevel(coarser: number): void {
+    this.detailLevel = Math.min(this.detailLevel + coarser, DETAILS.length - 1);
+    this.lateness = this.timelyCount = 0;
   }
 
-  private stand(): void {
+  private paintStill(): void {
     if (this.requestedAt === null) this.paint(performance.now(), 0);
   }
 
   private paint(now: number, level: number): void {
     this.drawnAt = now;
-    this.recent.push(now);
+    this.recentTimes.push(now);
     this.draw(DETAILS[level] ?? FINEST);
-    this.lastIsFine = level === 0;
-    this.count += 1;
+    this.wasLastFine = level === 0;
+    this.frameCount += 1;
     this.drawn.emit();
   }
 }

@@ -1,77 +1,80 @@
 import type { Camera } from "three";
 import type { ViewSize } from "../state/views/camera";
 import type { Span } from "../state/views/vector";
-import { reachOf, type ScreenReach } from "./screen-reach";
+import { extentOf, type ScreenExtent } from "./screen-extent";
 
-/** The share of the canvas's width, and of its height, that may be left out when the camera looks at all of something. */
-const MOST_COVERED = 0.6;
+/** The maximum share of the canvas's width and height that may be excluded when the camera fits something into view. */
+const MAX_COVERED = 0.6;
 
-/** What of a viewport is needed. */
-interface Seen {
+/** The part of a viewport that is used here. */
+interface ShiftedView {
   readonly size: ViewSize;
   readonly camera: Camera;
-  aside: number;
-  below: number;
+  shiftLeft: number;
+  shiftDown: number;
 }
 
-/** The part of the canvas that nothing covers, and robots that go there. */
+/** The part of the canvas that nothing covers, and the moves of the view that bring robots into it. */
 export class FreeRoom {
-  /** How many pixels at the right of the canvas something covers. */
+  /** Returns the width covered at the right of the canvas, pixels. */
   covered: () => number = () => 0;
-  private above = 0;
+  private coveredAbove = 0;
 
   /**
-   * @param robots the box around all robots.
-   * @param aim puts the camera where it belongs.
+   * @param robots - returns the bounding box of all robots.
+   * @param aim - updates the camera.
    */
   constructor(
-    private readonly viewport: Seen,
+    private readonly viewport: ShiftedView,
     private readonly robots: () => Span | null,
     private readonly aim: () => void,
     private readonly invalidate: () => void,
   ) {}
 
-  /** Its size; from now on its middle is where the camera looks. */
-  take(): ViewSize {
+  /** Returns the size of the free part, and moves the camera's centre to the centre of that part. */
+  center(): ViewSize {
     const { width, height } = this.viewport.size;
-    const [right, above] = [Math.min(this.covered(), width * MOST_COVERED), Math.min(this.above, height * MOST_COVERED)];
-    Object.assign(this.viewport, { aside: right / 2, below: above / 2 });
+    const [right, above] = [Math.min(this.covered(), width * MAX_COVERED), Math.min(this.coveredAbove, height * MAX_COVERED)];
+    Object.assign(this.viewport, { shiftLeft: right / 2, shiftDown: above / 2 });
     return { width: width - right, height: height - above };
   }
 
   /**
-   * Moves the focal point to the middle of the part that nothing covers at the right, as far as robots stay on the
+   * Moves the focal point to the centre of the part that nothing covers at the right, as far as robots stay on the
    * canvas.
    */
   makeRoom(): void {
     const { viewport } = this;
-    const before = viewport.aside;
-    viewport.aside = 0;
-    const wanted = Math.min(this.covered(), viewport.size.width * MOST_COVERED) / 2;
-    const reach = wanted > 0 ? this.reach() : null;
-    viewport.aside = reach ? Math.max(0, Math.min(wanted, reach.left)) : wanted;
-    if (viewport.aside !== before) this.invalidate();
+    const before = viewport.shiftLeft;
+    viewport.shiftLeft = 0;
+    const target = Math.min(this.covered(), viewport.size.width * MAX_COVERED) / 2;
+    const reach = target > 0 ? this.reach() : null;
+    viewport.shiftLeft = reach ? Math.max(0, Math.min(target, reach.left)) : target;
+    if (viewport.shiftLeft !== before) this.invalidate();
   }
 
-  /** Robots whose heads something covers, so many pixels high, go down as far as their feet stay on the canvas. */
+  /**
+   * Moves robots down whose tops are covered by something of this height, pixels, as far as their feet stay on the
+   * canvas.
+   */
   makeRoomAbove(height: number): void {
     const { viewport } = this;
-    const before = viewport.below;
-    this.above = height;
-    viewport.below = 0;
+    const before = viewport.shiftDown;
+    this.coveredAbove = height;
+    viewport.shiftDown = 0;
     const reach = height > 0 ? this.reach() : null;
-    if (reach) viewport.below = Math.max(0, Math.min(height - reach.top, viewport.size.height - reach.bottom));
-    if (viewport.below !== before) this.invalidate();
+    if (reach) viewport.shiftDown = Math.max(0, Math.min(height - reach.top, viewport.size.height - reach.bottom));
+    if (viewport.shiftDown !== before) this.invalidate();
   }
 
-  /** The distance from the left edge of the canvas that robots reach, pixels: 0 without one. */
+  /** The rightmost pixel column that robots cover, from the left edge of the canvas; 0 without robots. */
   get robotsReach(): number {
     return this.reach()?.right ?? 0;
   }
 
-  private reach(): ScreenReach | null {
+  private reach(): ScreenExtent | null {
     const box = this.robots();
     this.aim();
-    return box && reachOf(box, this.viewport.camera, this.viewport.size);
+    return box && extentOf(box, this.viewport.camera, this.viewport.size);
   }
 }

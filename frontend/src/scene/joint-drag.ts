@@ -6,15 +6,18 @@ import { framePose } from "./pose";
 import type { Stage } from "./stage";
 import type { ToolEvent } from "./tools/tool";
 
-/** An angle is looked for this far to both sides of the last one, rad, in this many steps. */
+/** The angle is searched within this range on both sides of the last one, rad, in this many steps. */
 const REACH = Math.PI / 2;
 const STEPS = 48;
 const REFINEMENTS = 24;
-/** The tools whose left button links may be dragged with. */
+/** The tools whose left button may also drag links. */
 const TOOLS = ["rviz_default_plugins/Interact", "rviz_default_plugins/MoveCamera"];
 
-/** What is held: a joint's axis and the point of its link that was grabbed, in the fixed frame as they were then. */
-interface Hold {
+/**
+ * The joint being dragged: its axis and origin, and the grabbed point of its link, in the fixed frame at the start of
+ * the drag.
+ */
+interface JointGrab {
   readonly joint: JointDetails;
   readonly axis: Vector3;
   readonly origin: Vector3;
@@ -23,10 +26,13 @@ interface Hold {
   moved: number;
 }
 
-/** Drags links: with Alt, or while hands are on, a link that is pulled moves the nearest joint above it that can be moved. */
+/**
+ * Drags links: with Alt, or while the switch for dragging is on, pulling a link moves the nearest joint above it that
+ * can be moved.
+ */
 export class JointDrag {
-  private hold: Hold | null = null;
-  private isHolding = false;
+  private grabbed: JointGrab | null = null;
+  private hasAxes = false;
   private isHovering = false;
 
   constructor(
@@ -34,29 +40,29 @@ export class JointDrag {
     private readonly session: Session,
   ) {}
 
-  /** Handles an event of the mouse; false for one that the current tool should have. */
+  /** Handles a mouse event; returns false if the event is left to the active tool. */
   pointer(event: ToolEvent): boolean {
-    if (this.hold) {
-      if (event.type === "move" && event.left) this.pull(this.hold, event);
-      else if (event.type === "up" && !event.left) this.letGo();
+    if (this.grabbed) {
+      if (event.type === "move" && event.left) this.pull(this.grabbed, event);
+      else if (event.type === "up" && !event.left) this.release();
       return true;
     }
     const { joints, tools } = this.session;
-    const wanted = joints.controls !== null && (event.alt || joints.handsOn) && event.type !== "leave";
-    if (!wanted || (tools.current && !TOOLS.includes(tools.current.cls))) {
+    const isEnabled = joints.controls !== null && (event.alt || joints.dragsWithoutAlt) && event.type !== "leave";
+    if (!isEnabled || (tools.current && !TOOLS.includes(tools.current.cls))) {
       this.stopHovering();
       return false;
     }
-    this.askForAxes();
+    this.requestAxes();
     if (event.type === "down" && event.button === "left" && !event.shift) return this.grab(event);
     if (event.type === "move" && !event.left && !event.middle && !event.right) return this.hover(event);
     return false;
   }
 
-  /** Asks for the joints' axes, which are part of the description: that is not kept for pages that never drag. */
-  private askForAxes(): void {
-    if (!this.isHolding) this.session.description.hold();
-    this.isHolding = true;
+  /** Requests the joints' axes, which are part of the description. Pages that never drag do not need it. */
+  private requestAxes(): void {
+    if (!this.hasAxes) this.session.description.hold();
+    this.hasAxes = true;
   }
 
   private hover(event: ToolEvent): boolean {
@@ -74,15 +80,15 @@ export class JointDrag {
     const { frames, joints } = this.session;
     const pose = new Matrix4();
     if (!framePose(frames, frames.row(model.links.get(joint.child)?.frame ?? ""), pose)) return false;
-    // A joint's axis is the same in its own frame and in that of the link it moves.
+    // A joint's axis is the same in its own frame and in the frame of its child link.
     const axis = new Vector3().fromArray(joint.axis).transformDirection(pose);
     const origin = new Vector3().setFromMatrixPosition(pose);
-    this.hold = { joint, axis, origin, grabbed: point, start: joints.positions[joint.name] ?? 0, moved: 0 };
+    this.grabbed = { joint, axis, origin, grabbed: point, start: joints.positions[joint.name] ?? 0, moved: 0 };
     this.stage.viewport.canvas.style.cursor = "grabbing";
     return true;
   }
 
-  private pull(hold: Hold, event: ToolEvent): void {
+  private pull(hold: JointGrab, event: ToolEvent): void {
     const { ray } = this.stage.picker.rayAt(event.x, event.y);
     const { joint, axis, origin, grabbed } = hold;
     hold.moved =
@@ -93,8 +99,8 @@ export class JointDrag {
     this.session.joints.move({ [control.name]: Math.min(Math.max(position, control.lower), control.upper) });
   }
 
-  private letGo(): void {
-    this.hold = null;
+  private release(): void {
+    this.grabbed = null;
     this.isHovering = true;
     this.stopHovering();
   }
@@ -106,9 +112,9 @@ export class JointDrag {
     this.stage.viewport.canvas.style.cursor = "default";
   }
 
-  /** The joint that a link under the pointer hangs from and that can be moved. */
+  /** Returns the nearest movable joint above the link under the pointer. */
   private find(event: ToolEvent): { model: DescriptionModel; joint: JointDetails; point: Vector3 } | null {
-    const found = this.stage.picker.at(event.x, event.y);
+    const found = this.stage.picker.objectAt(event.x, event.y);
     const model = found && this.session.description.of(found.display);
     if (!model) return null;
     for (let joint = model.jointAbove(found.hit.key); joint; joint = model.jointAbove(joint.parent)) {
@@ -118,7 +124,7 @@ export class JointDrag {
   }
 }
 
-/** The distance that a point must slide along an axis to come closest to a ray, m; 0 when they are parallel. */
+/** Returns the distance that a point must slide along an axis to come closest to a ray, m; 0 if they are parallel. */
 export function slideTowards(ray: Ray, axis: Vector3, grabbed: Vector3): number {
   const between = grabbed.clone().sub(ray.origin);
   const cosine = axis.dot(ray.direction);
@@ -128,10 +134,10 @@ export function slideTowards(ray: Ray, axis: Vector3, grabbed: Vector3): number 
 }
 
 /**
- * By which angle a point must turn about an axis to come closest to a ray, rad.
+ * Returns the angle by which a point must turn about an axis to come closest to a ray, rad.
  *
- * It is looked for around the angle before, so that the point continues over whole turns, and stays on its side of the
- * circle when the circle is seen from its edge, where both sides are equally close.
+ * The search starts at the previous angle, so that the point can turn more than once, and stays on its side of the
+ * circle when the circle is seen edge-on, where both sides are equally close.
  */
 export function turnTowards(ray: Ray, axis: Vector3, origin: Vector3, grabbed: Vector3, before: number): number {
   const arm = grabbed.clone().sub(origin);

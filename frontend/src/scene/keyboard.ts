@@ -4,10 +4,10 @@ import type { Stage } from "./stage";
 import { TOOLS } from "./tools/catalog";
 import type { Toolbox } from "./tools/toolbox";
 
-/** A selector of the elements in which a letter is text, or chooses among entries. */
+/** Selects the elements in which a letter is text, or chooses an entry. */
 export const TAKES_LETTERS = "input:not([type=checkbox]):not([type=range]):not([type=button]), textarea, select, [contenteditable], [role=menu], [role=listbox], dialog";
 
-/** RViz's keys for tools and views: they work wherever no text is being typed. */
+/** RViz's keys for tools and views, which work wherever no text is typed. */
 export class Keyboard {
   constructor(
     private readonly session: Session,
@@ -18,11 +18,11 @@ export class Keyboard {
     document.addEventListener("keydown", (event) => {
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.target instanceof Element && event.target.closest(TAKES_LETTERS)) return;
-      if (this.pressed(event.key.length === 1 ? event.key.toLowerCase() : event.key, event.shiftKey)) event.preventDefault();
+      if (this.runKey(event.key.length === 1 ? event.key.toLowerCase() : event.key, event.shiftKey)) event.preventDefault();
     });
   }
 
-  private pressed(key: string, shift: boolean): boolean {
+  private runKey(key: string, shift: boolean): boolean {
     const { session, toolbox } = this;
     const { tools } = session;
     if (key === "Escape") return this.escape();
@@ -31,7 +31,7 @@ export class Keyboard {
       tools.toggle(tool);
       return true;
     }
-    if (toolbox.current.key?.(key) === true && (tool || (key === "f" && !shift))) return true;
+    if (toolbox.current.pressKey?.(key) === true && (tool || (key === "f" && !shift))) return true;
     switch (key) {
       case "f":
         if (shift) this.stage.fit();
@@ -49,7 +49,7 @@ export class Keyboard {
     }
   }
 
-  /** The default tool; when it is in hand already, nothing is selected any more. */
+  /** Activates the default tool; if it is active already, clears the selection. */
   private escape(): boolean {
     const { tools, selection } = this.session;
     if (tools.current !== tools.default) tools.choose(tools.default);
@@ -57,10 +57,10 @@ export class Keyboard {
     return true;
   }
 
-  /** Looks at the object under the pointer; where nothing is, at the whole selection, or at all objects. */
+  /** Looks at the point under the pointer; without one, fits the selection, or everything, into view. */
   private focus(): void {
-    const { place } = this.controls;
-    const point = place && this.stage.picker.pointAt(place.x, place.y);
+    const { position } = this.controls;
+    const point = position && this.stage.picker.pointAt(position.x, position.y);
     if (point) this.session.view.lookAt(point);
     else this.stage.fit();
   }

@@ -1,8 +1,8 @@
-/** Layers of three.js: what cameras see is in layer 0, as everything is at first. */
+/** Layers of three.js. Objects are in layer 0 by default, which cameras render. */
 
-/** Outlined because it is selected. */
+/** Outlined because the object is selected. */
 export const SELECTED = 1;
-/** Lights up for a moment. */
+/** Highlighted for a moment. */
 export const FLASHING = 2;
-/** Met by rays, but drawn by something else together with others. */
-export const TOUCHED = 3;
+/** Tested by rays, but drawn as part of a batch. */
+export const PICKABLE = 3;

@@ -1,19 +1,19 @@
-/** Part of a surface's colour that is seen even where the light at the camera does not reach it. */
+/** The share of a surface's colour that is visible even where the camera's light does not reach. */
 export const AMBIENT = 0.2;
 
-/** The source of light: RViz's at the camera, a soft one there, a studio, or the lights of a world. */
+/** The lighting: RViz's light at the camera, a soft one at the camera, a studio, or the lights of a world. */
 export type Lighting = "Camera" | "Soft" | "Studio" | "World";
 
-/** Whether lamps in the scene shine on surfaces. */
-export function standsInScene(lighting: Lighting): boolean {
+/** Whether the lighting consists of lights in the scene. */
+export function usesSceneLights(lighting: Lighting): boolean {
   return lighting === "Studio" || lighting === "World";
 }
 
 /**
- * GLSL: `byCamera` is RViz's light, which shows a surface that faces the camera in exactly its colour; `softly` that of a
- * lamp above the viewer's left shoulder, of a sky, and of the sky's reflection. That reflection is what tells the shape of
- * a black surface. `normal` is in the frame of the camera, so neither lamps nor shadows have to be computed: it takes a
- * software renderer no longer than RViz's light.
+ * GLSL functions for light that moves with the camera. `byCamera` is RViz's light, which shows a surface facing the
+ * camera in exactly its colour. `softly` is a lamp above the viewer's left shoulder, a sky, and the sky's reflection,
+ * which reveals the shape of black surfaces. `normal` is in the camera's frame, so that neither lights nor shadows have
+ * to be computed; on a software renderer this is as fast as RViz's light.
  */
 export const SURFACE_LIGHT = /* glsl */ `
   vec3 byCamera(vec3 color, float facing) {

@@ -2,20 +2,23 @@ import { Box3 } from "three";
 import type { ViewState } from "../state/view";
 import type { Drawing } from "./displays/drawing";
 import { MapDrawing } from "./displays/map";
-import { spanOf } from "./first-look";
+import { spanOf } from "./initial-view";
 import type { FreeRoom } from "./free-room";
 
-/** Windows for which users make no files: a scale from a file, in pixels to a metre, would cut off most of a map. */
+/** Selects the windows of phones. A scale from a file, in pixels per metre, would cut off most of a map there. */
 const SMALL = "(max-width: 900px), (max-height: 480px)";
 
-/** On a phone a camera above the maps shows all of them, until a user moves it: again when they grow or the phone is turned. */
+/**
+ * On a phone, fits all maps into a camera above them until the user moves it; repeats this when maps grow or the phone
+ * is rotated.
+ */
 export function frameMaps(enabled: Iterable<readonly [string, Drawing]>, view: ViewState, room: FreeRoom): void {
   if (!matchMedia(SMALL).matches) return;
   const maps = [...enabled].flatMap(([, drawing]) => (drawing instanceof MapDrawing ? [drawing] : []));
   if (maps.length === 0) return;
   const [width, height] = [window.innerWidth, window.innerHeight];
-  const what = [...maps.map((each) => each.size), `${width} x ${height}`].join(";");
-  if (!view.awaitsMap(what)) return;
-  const span = spanOf(maps.reduce((sum, each) => sum.union(each.bounds()), new Box3()));
-  if (span) view.frameMap(span, room.take(), what);
+  const key = [...maps.map((map) => map.size), `${width} x ${height}`].join(";");
+  if (!view.awaitsMap(key)) return;
+  const span = spanOf(maps.reduce((sum, map) => sum.union(map.bounds()), new Box3()));
+  if (span) view.frameMap(span, room.center(), key);
 }

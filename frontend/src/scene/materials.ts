@@ -18,12 +18,12 @@ import {
   type Texture,
 } from "three";
 import { filmic } from "./filmic-tone";
-import { standsInScene, type Lighting } from "./light";
-import { soft } from "./soft-material";
+import { usesSceneLights, type Lighting } from "./light";
+import { withSoftLight } from "./soft-material";
 
 /**
- * The reflection of a surface: roughness and metalness from 0 to 1, maps of these and of its normals, its emission, and
- * its ambient occlusion (red).
+ * The reflective properties of a surface: roughness and metalness from 0 to 1, maps of these and of the normals,
+ * emission, and ambient occlusion (red channel).
  */
 export interface Surface {
   readonly roughness: number;
@@ -36,62 +36,62 @@ export interface Surface {
   readonly aoMap: Texture | null;
 }
 
-/** The images of a surface. */
+/** Returns the textures of a surface. */
 export function mapsOf(surface: Surface | null | undefined): (Texture | null)[] {
   if (!surface) return [];
   const { normalMap, roughnessMap, metalnessMap, emissiveMap, aoMap } = surface;
   return [normalMap, roughnessMap, metalnessMap, emissiveMap, aoMap];
 }
 
-/** The look of a surface; equal looks share one material. */
+/** The look of a surface; equal looks share a material. */
 export interface Look {
   color: readonly [number, number, number];
   alpha: number;
   map: Texture | null;
   vertexColors: boolean;
   doubleSided: boolean;
-  /** Lines and marks in the same plane are seen on it. */
+  /** Whether lines and marks in the same plane must remain visible. */
   behind?: boolean;
-  /** Only lamps in the scene are reflected: the light of the camera is RViz's. */
+  /** Applies only to lights in the scene, because the camera's light is that of RViz. */
   surface?: Surface | null;
 }
 
-/** RViz's material for what has none: RVIZ/ShadedRed. */
+/** RViz's colour for surfaces without a material: RVIZ/ShadedRed. */
 export const RVIZ_RED = [1, 0, 0] as const;
-/** Below this alpha RViz blends and stops writing depth. */
+/** Below this alpha, RViz blends and does not write depth. */
 export const OPAQUE_FROM = 0.9998;
 
-/** Makes a surface translucent, or opaque again. */
+/** Makes a material translucent or opaque. */
 export function blend(material: Material, seeThrough: boolean): void {
   material.transparent = seeThrough;
   material.depthWrite = !seeThrough;
   material.needsUpdate = true;
 }
 
-/** The polygon offset that keeps lines and marks in the plane of a surface visible. */
-export function behind(isBehind: boolean): { polygonOffset: boolean; polygonOffsetFactor: number; polygonOffsetUnits: number } {
+/** Returns the polygon offset that keeps lines and marks in the plane of a surface visible. */
+export function offsetBehind(isBehind: boolean): { polygonOffset: boolean; polygonOffsetFactor: number; polygonOffsetUnits: number } {
   return { polygonOffset: isBehind, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
 }
 
-/** Whether lines are seen through: all of them, or some, by the alpha of their colours r g b a. */
-export function areSeenThrough(opacity: number, colors: BufferAttribute | InterleavedBufferAttribute | undefined): boolean {
+/** Whether any lines are translucent, by their opacity or the alpha of their colours r g b a. */
+export function areTranslucent(opacity: number, colors: BufferAttribute | InterleavedBufferAttribute | undefined): boolean {
   if (opacity < 1) return true;
   for (let i = 0; colors && i < colors.count; i++) if (colors.getW(i) < 1) return true;
   return false;
 }
 
-/** RViz's white of a link without a transform. */
+/** The white in which RViz draws a link without a transform. */
 export const errorMaterial = new MeshBasicMaterial({ color: 0xffffff, side: DoubleSide });
 
-/** Hands out materials; many links of one colour make one material. */
+/** Shares materials among surfaces with the same look. */
 export class MaterialPool {
   lighting: Lighting = "Camera";
   private readonly materials = new Map<string, MeshLambertMaterial | MeshStandardMaterial>();
   private readonly used = new Set<string>();
 
-  /** Whether lights in the scene shine on the surfaces, so that each is to be drawn by itself. */
+  /** Whether lights in the scene illuminate the surfaces, so that reflective properties apply. */
   get isLit(): boolean {
-    return standsInScene(this.lighting);
+    return usesSceneLights(this.lighting);
   }
 
   get(look: Look): Material {
@@ -111,18 +111,18 @@ export class MaterialPool {
         map: look.map,
         vertexColors: look.vertexColors,
         side: look.doubleSided ? DoubleSide : FrontSide,
-        ...behind(look.behind === true),
+        ...offsetBehind(look.behind === true),
       };
-      material = surface ? reflecting(style, surface) : new MeshLambertMaterial(style);
+      material = surface ? reflectiveMaterial(style, surface) : new MeshLambertMaterial(style);
       if (this.lighting === "Studio") filmic(material);
-      else if (this.lighting === "Soft") soft(material);
+      else if (this.lighting === "Soft") withSoftLight(material);
       this.materials.set(key, material);
     }
     return material;
   }
 
-  /** Runs `paint`, which asks for every material still wanted, and lets go of the others. */
-  renew(paint: () => void): void {
+  /** Runs `paint`, which requests every material still needed, and disposes of the others. */
+  repaint(paint: () => void): void {
     this.used.clear();
     paint();
     for (const [key, material] of this.materials) {
@@ -138,26 +138,29 @@ export class MaterialPool {
   }
 }
 
-/** A material that reflects lamps, and as far as it is of metal a grey room. */
-function reflecting(style: MeshStandardMaterialParameters, surface: Surface): MeshStandardMaterial {
-  const envMap = surface.metalness > 0 ? room() : null;
+/** Returns a material that reflects lights and, as far as it is metallic, a grey room. */
+function reflectiveMaterial(style: MeshStandardMaterialParameters, surface: Surface): MeshStandardMaterial {
+  const envMap = surface.metalness > 0 ? roomMap() : null;
   const emissive = new Color(...surface.emissive);
   const material = new MeshStandardMaterial({ ...style, ...surface, emissive, envMap, envMapIntensity: surface.metalness });
   material.envMapRotation.x = Math.PI / 2; // the image has y up
   return material;
 }
 
-let theRoom: DataTexture | null = null;
+let cachedRoom: DataTexture | null = null;
 
-/** The environment map that metal reflects besides lamps, or it would be black: bright above and dark below. */
-function room(): DataTexture {
-  if (theRoom) return theRoom;
+/**
+ * Returns the environment map that metal reflects in addition to lights; it would be black without one. The map is
+ * bright above and dark below.
+ */
+function roomMap(): DataTexture {
+  if (cachedRoom) return cachedRoom;
   const greys = [90, 90, 110, 150, 190, 215, 230, 240];
-  theRoom = new DataTexture(new Uint8Array(greys.flatMap((grey) => [grey, grey, grey, 255])), 1, greys.length);
-  theRoom.mapping = EquirectangularReflectionMapping;
-  theRoom.magFilter = theRoom.minFilter = LinearFilter;
-  theRoom.needsUpdate = true;
-  return theRoom;
+  cachedRoom = new DataTexture(new Uint8Array(greys.flatMap((grey) => [grey, grey, grey, 255])), 1, greys.length);
+  cachedRoom.mapping = EquirectangularReflectionMapping;
+  cachedRoom.magFilter = cachedRoom.minFilter = LinearFilter;
+  cachedRoom.needsUpdate = true;
+  return cachedRoom;
 }
 
 /** Loads the texture of a URDF material. */

@@ -11,7 +11,7 @@ import { SELECTED } from "./layers";
 import { SCREEN_VERTEX, ScreenQuad } from "./objects/screen-quad";
 import type { Viewport } from "./viewport";
 
-/** How an outline looks; each needs a layer of its own, and `fill` is how much of the objects is tinted, 0 to 1. */
+/** How an outline is drawn. Each needs its own layer; `fill` is the strength of the tint over the objects, 0 to 1. */
 interface OutlineLook {
   color: number;
   layer: number;
@@ -35,7 +35,7 @@ const FRAGMENT = /* glsl */ `
     gl_FragColor = vec4(color, max((near - inside) * 0.95, inside * fill) * strength);
   }
 `;
-/** Draws a line around the selected objects, also where something hides them, and a tint over them. */
+/** Draws a line around the selected objects, also where they are hidden, and a tint over them. */
 export class Outline {
   private objects: readonly Object3D[] = [];
   private readonly mask = new WebGLRenderTarget(1, 1, { samples: 4 });
@@ -67,7 +67,7 @@ export class Outline {
     this.uniforms.fill.value = look.fill;
   }
 
-  /** 1 as it is, 0 not at all. */
+  /** The opacity of the outline: 1 full, 0 none. */
   set strength(strength: number) {
     this.uniforms.strength.value = strength;
   }
@@ -78,7 +78,7 @@ export class Outline {
     this.objects = objects;
   }
 
-  /** Draws over the frame that was just rendered. */
+  /** Draws over the frame just rendered. */
   render(): void {
     if (this.objects.length === 0) return;
     const { renderer, scene, camera } = this.viewport;

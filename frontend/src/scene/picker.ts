@@ -3,51 +3,51 @@ import type { Session } from "../state/session";
 import type { SelectedItem, SelectionMode } from "../state/selection";
 import { add, scale, type Span, type Vector } from "../state/views/vector";
 import { DepthMap } from "./depth-map";
-import { spanOf } from "./first-look";
+import { spanOf } from "./initial-view";
 import type { Drawing } from "./displays/drawing";
-import { TOUCHED } from "./layers";
-import type { Described, Hit } from "./picking";
+import { PICKABLE } from "./layers";
+import type { DescriptionRow, Hit } from "./picking";
 import { ScreenBox } from "./selection-box";
 import type { Viewport } from "./viewport";
 
-/** A thing of a display under the pointer. */
-export interface Found {
+/** An object of a display under the pointer. */
+export interface PickedObject {
   display: string;
   drawing: Drawing;
   hit: Hit;
 }
 
-/** Finds what is seen at a place of the canvas; places are pixels from its upper left corner. */
+/** Finds objects at positions on the canvas, in pixels from its upper left corner. */
 export class Picker {
   constructor(
     private readonly viewport: Viewport,
     private readonly session: Session,
-    /** The enabled displays with their drawings. */
+    /** Returns the enabled displays with their drawings. */
     private readonly drawings: () => Iterable<readonly [string, Drawing]>,
   ) {}
 
-  /** The drawing of a display that is on. */
+  /** Returns the drawing of an enabled display. */
   drawing(display: string): Drawing | undefined {
     for (const [id, drawing] of this.drawings()) if (id === display) return drawing;
     return undefined;
   }
 
-  /** The ray from the camera through a place. */
+  /** Returns the ray from the camera through a position. */
   rayAt(x: number, y: number): Raycaster {
     this.viewport.aim(this.session.view);
     const ray = new Raycaster();
-    ray.layers.enable(TOUCHED);
-    ray.setFromCamera(this.onScreen(x, y), this.viewport.camera);
+    ray.layers.enable(PICKABLE);
+    ray.setFromCamera(this.toDevice(x, y), this.viewport.camera);
     return ray;
   }
 
-  /** The nearest thing at a place. */
-  at(x: number, y: number): Found | null {
-    return this.along(this.rayAt(x, y));
+  /** Returns the nearest object at a position. */
+  objectAt(x: number, y: number): PickedObject | null {
+    return this.alongRay(this.rayAt(x, y));
   }
 
-  along(ray: Raycaster): Found | null {
-    let best: Found | null = null;
+  alongRay(ray: Raycaster): PickedObject | null {
+    let best: PickedObject | null = null;
     for (const [display, drawing] of this.drawings()) {
       const hit = drawing.pick?.(ray);
       if (hit && (best === null || hit.distance < best.hit.distance)) best = { display, drawing, hit };
@@ -55,13 +55,13 @@ export class Picker {
     return best;
   }
 
-  /** The point of the nearest thing at a place, in the fixed frame. */
+  /** Returns the point of the nearest object at a position, in the fixed frame. */
   pointAt(x: number, y: number): Vector | null {
-    const found = this.at(x, y);
+    const found = this.objectAt(x, y);
     return found && [found.hit.point.x, found.hit.point.y, found.hit.point.z];
   }
 
-  /** The point of the plane z = 0 of the fixed frame at a place. */
+  /** Returns the point of the plane z = 0 of the fixed frame at a position. */
   groundAt(x: number, y: number): Vector | null {
     const { origin, direction } = this.rayAt(x, y).ray;
     const distance = -origin.z / direction.z;
@@ -69,19 +69,19 @@ export class Picker {
     return [origin.x + direction.x * distance, origin.y + direction.y * distance, 0];
   }
 
-  /** Selects the nearest thing at a place, or nothing. */
+  /** Selects the nearest object at a position, or clears the selection. */
   selectAt(x: number, y: number, mode: SelectionMode = "replace"): void {
-    const found = this.at(x, y);
+    const found = this.objectAt(x, y);
     const selected = found && !found.hit.isGround;
     this.session.selection.pick(selected ? [{ display: found.display, key: found.hit.key }] : [], mode);
   }
 
-  /** Selects all visible things in the rectangle between two places. */
+  /** Selects all visible objects in the rectangle between two positions. */
   selectBox(from: Vector2, to: Vector2, mode: SelectionMode): void {
     this.viewport.aim(this.session.view);
-    const [a, b] = [this.onScreen(from.x, from.y), this.onScreen(to.x, to.y)];
+    const [a, b] = [this.toDevice(from.x, from.y), this.toDevice(to.x, to.y)];
     const depths = new DepthMap(this.viewport);
-    const isSeen = depths.isSeen.bind(depths);
+    const isSeen = depths.isVisible.bind(depths);
     const box = new ScreenBox(this.viewport.camera, a.clone().min(b), a.clone().max(b), isSeen);
     const items: SelectedItem[] = [];
     for (const [display, drawing] of this.drawings()) {
@@ -90,28 +90,28 @@ export class Picker {
     this.session.selection.pick(items, mode);
   }
 
-  /** The rows of the Selection panel for a thing; null when it is not drawn any more. */
-  describe(item: SelectedItem): Described | null {
+  /** Returns the rows of the Selection panel for an object; null if the object is no longer drawn. */
+  describe(item: SelectedItem): DescriptionRow | null {
     for (const [display, drawing] of this.drawings()) {
       if (display === item.display) return drawing.describe?.(item.key) ?? null;
     }
     return null;
   }
 
-  /** The middle of the selection, or of all selectable things when nothing is selected. */
-  middleOfSelection(): Vector | null {
+  /** Returns the centre of the selection, or of all selectable objects if nothing is selected. */
+  centerOfSelection(): Vector | null {
     const span = this.boundsOfSelection() ?? this.boundsOfAll();
     return span && scale(add(span.min, span.max), 0.5);
   }
 
-  /** The box around all that can be selected, in the fixed frame. */
+  /** Returns the bounding box of all selectable objects in the fixed frame. */
   boundsOfAll(): Span | null {
     const box = new Box3();
     for (const [, drawing] of this.drawings()) if (drawing.pick) box.expandByObject(drawing.root);
     return spanOf(box);
   }
 
-  /** The box around what is selected, in the fixed frame; null when nothing is. */
+  /** Returns the bounding box of the selection in the fixed frame; null if nothing is selected. */
   boundsOfSelection(): Span | null {
     const box = new Box3();
     for (const [display, drawing] of this.drawings()) {
@@ -126,7 +126,7 @@ export class Picker {
     return spanOf(box);
   }
 
-  private onScreen(x: number, y: number): Vector2 {
+  private toDevice(x: number, y: number): Vector2 {
     const { clientWidth, clientHeight } = this.viewport.canvas;
     return new Vector2((x / clientWidth) * 2 - 1, 1 - (y / clientHeight) * 2);
   }

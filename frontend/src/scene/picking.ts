@@ -1,58 +1,61 @@
 import type { Object3D, Raycaster, Vector3 } from "three";
 
-/** A thing of a display that a ray met. */
+/** An object of a display that a ray hit. */
 export interface Hit {
-  /** Names the thing within its display while it exists: a link, a marker's namespace and id, a point's number. */
+  /**
+   * Identifies the object within its display while it exists: the name of a link, namespace and ID of a marker, index
+   * of a point.
+   */
   key: string;
-  /** From the ray's origin, m. */
+  /** The distance from the ray's origin, m. */
   distance: number;
-  /** Where, in the fixed frame, m. */
+  /** The point of the hit, in the fixed frame, m. */
   point: Vector3;
-  /** It is in the way of the ray, but nothing to select: a map, points that are not selectable. */
+  /** Set for objects that stop a ray but cannot be selected: a map, or points that are not selectable. */
   isGround?: true;
 }
 
-/** A rectangle on the screen, and the things visible in it, without things behind others. */
+/** A rectangle on the screen, which contains the objects visible in it, without hidden ones. */
 export interface SelectionBox {
-  /** Whether a point of the fixed frame is seen in the rectangle. */
+  /** Whether a point of the fixed frame is visible in the rectangle. */
   hasPoint(x: number, y: number, z: number): boolean;
-  /** Whether a part of an object, whose world matrix is current, is seen in it. */
+  /** Whether a part of an object, whose world matrix must be current, is visible in the rectangle. */
   hasObject(object: Object3D): boolean;
 }
 
 /** A row of the Selection panel. */
-export interface Described {
+export interface DescriptionRow {
   name: string;
   value?: string;
-  children?: readonly Described[];
+  children?: readonly DescriptionRow[];
 }
 
-/** An event of the mouse over the scene, as the Interact tool hands it to drawings. */
+/** A mouse event over the scene, as the Interact tool passes it to drawings. */
 export interface ScenePointer {
-  /** `enter` and `leave`: the pointer comes over a thing of the drawing or goes away from it. */
+  /** `enter` and `leave`: the pointer moved onto an object of the drawing, or away from it. */
   readonly type: "enter" | "leave" | "move" | "down" | "up" | "wheel";
-  /** Pixels from the canvas' upper left corner. */
+  /** The position on the canvas, pixels from its upper left corner. */
   readonly x: number;
   readonly y: number;
   readonly dx: number;
   readonly dy: number;
-  /** The button that went down or up. */
+  /** The button that was pressed or released. */
   readonly button: "left" | "middle" | "right" | null;
   readonly shift: boolean;
   readonly ctrl: boolean;
-  /** From the camera through the pointer. */
+  /** The ray from the camera through the pointer. */
   readonly ray: Raycaster;
-  /** What of the drawing the ray meets; while something is held, what it met when it was taken. */
+  /** The object of the drawing that the ray hits; during a drag, the one that was grabbed. */
   readonly hit: Hit | null;
   setCursor(cursor: string): void;
   /** Sets the text of the status line. */
   setHint(hint: string): void;
 }
 
-/** Whether things can be moved with the Interact tool now. */
+/** The state of the Interact tool. */
 export interface Interaction {
-  /** The Interact tool is in hand. */
+  /** Whether the Interact tool is active. */
   enabled: boolean;
-  /** Something is held, and the tool hides what is not. */
+  /** Whether an object is being dragged, and the tool hides all others. */
   hideOthers: boolean;
 }

@@ -6,14 +6,14 @@ const position = new Vector3();
 const orientation = new Quaternion();
 const ONE = new Vector3(1, 1, 1);
 
-/** Writes a pose, x y z (m) qx qy qz qw from `at` on, into `matrix`. */
+/** Computes the matrix of a pose, x y z (m) qx qy qz qw, from index `at` on. */
 export function poseMatrix(values: ArrayLike<number>, matrix: Matrix4, at = 0): Matrix4 {
   position.fromArray(values, at);
   orientation.fromArray(values, at + 3);
   return matrix.compose(position, orientation, ONE);
 }
 
-/** Writes the pose of a frame into `matrix`; false, and nothing written, where the frame has no transform. */
+/** Computes the pose of a frame; returns false, and leaves `matrix` unchanged, if the frame has no transform. */
 export function framePose(frames: FrameStore, row: number, matrix: Matrix4): boolean {
   if (!frames.has(row)) return false;
   poseMatrix(frames.poses, matrix, row * 7);
@@ -21,8 +21,8 @@ export function framePose(frames: FrameStore, row: number, matrix: Matrix4): boo
 }
 
 /**
- * Writes the pose of a display's content into `matrix`: where its frame was then, or is now if it follows its frame.
- * False, and nothing written, where the frame has no transform.
+ * Computes the pose of a display's content: that of its frame at the time of the content, or now if the content follows
+ * its frame. Returns false, and leaves `matrix` unchanged, if the frame has no transform.
  */
 export function dataPose(frames: FrameStore, data: DisplayData, matrix: Matrix4): boolean {
   if (data.pose) {

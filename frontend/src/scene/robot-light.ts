@@ -4,24 +4,24 @@ import type { Lighting } from "./light";
 import { StudioLight } from "./studio-light";
 import type { OwnLight } from "./surroundings";
 
-/** The part of a robot that light needs. */
+/** The part of a robot's drawing that lighting needs. */
 export interface LitRobot {
   light: Lighting;
-  /** A key of the parts that are seen. */
-  readonly seen: string;
+  /** A key of the visible parts. */
+  readonly visibleKey: string;
   readonly visibleMeshes: readonly Mesh[];
-  /** The height of the ground under it, in the fixed frame, m. */
+  /** Returns the height of the ground below the robot, in the fixed frame, m. */
   ground(): number;
   roughBounds(): Box3;
 }
 
-/** What shines on robots, and the shadows that they cast. */
+/** The lighting of robots, and the shadows that they cast. */
 export class RobotLight {
   readonly root = new Group();
   private readonly studio = new StudioLight();
   private readonly shadow = new ContactShadow();
-  /** The robots on the ground, and the height of the ground, m. */
-  private standing = { what: "", height: 0 };
+  /** The key of the visible robots, and the height of the ground below them, m. */
+  private ground = { what: "", height: 0 };
 
   constructor() {
     this.root.add(this.studio.root, this.shadow.root);
@@ -30,21 +30,21 @@ export class RobotLight {
   /**
    * Places light and shadows around robots.
    *
-   * @param backdrop the colour behind a studio.
+   * @param backdrop - the background colour of a studio.
    * @returns the light in the scene, if any.
    */
-  shine(lighting: Lighting, robots: readonly LitRobot[], backdrop: string): OwnLight | null {
+  update(lighting: Lighting, robots: readonly LitRobot[], backdrop: string): OwnLight | null {
     this.studio.root.visible = lighting === "Studio";
     this.shadow.root.visible = lighting === "Soft";
     if (lighting === "Camera") return null;
-    const what = robots.map((robot) => robot.seen).join(";");
-    if (what !== this.standing.what) this.standing = { what, height: Math.min(...robots.map((robot) => robot.ground())) };
-    const { height } = this.standing;
+    const what = robots.map((robot) => robot.visibleKey).join(";");
+    if (what !== this.ground.what) this.ground = { what, height: Math.min(...robots.map((robot) => robot.ground())) };
+    const { height } = this.ground;
     if (lighting === "Soft") {
-      this.shadow.fall(robots.flatMap((robot) => robot.visibleMeshes), height);
+      this.shadow.update(robots.flatMap((robot) => robot.visibleMeshes), height);
       return null;
     }
-    this.studio.shineOn(robots.reduce((sum, robot) => sum.union(robot.roughBounds()), new Box3()), height);
+    this.studio.update(robots.reduce((sum, robot) => sum.union(robot.roughBounds()), new Box3()), height);
     return { shadows: true, background: null, daylight: null, fog: null, backdrop };
   }
 }

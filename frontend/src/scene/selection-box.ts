@@ -1,9 +1,9 @@
 import { Matrix4, Mesh, Raycaster, Vector2, Vector3, Vector4, type BufferAttribute, type Camera, type Object3D } from "three";
-import { TOUCHED } from "./layers";
+import { PICKABLE } from "./layers";
 import type { SelectionBox } from "./picking";
 
-/** Of larger geometries only so many corners are looked at. */
-const MOST_CORNERS = 4000;
+/** Of a larger geometry, only this number of vertices is tested. */
+const MAX_VERTICES = 4000;
 
 /** A rectangle on the screen, in normalized device coordinates (-1 to 1, y up). */
 export class ScreenBox implements SelectionBox {
@@ -15,7 +15,7 @@ export class ScreenBox implements SelectionBox {
     private readonly camera: Camera,
     private readonly low: Vector2,
     private readonly high: Vector2,
-    /** Tells whether a point that is in the rectangle is seen, and not hidden. */
+    /** Returns whether a point within the rectangle is visible rather than hidden. */
     private readonly isSeen: (x: number, y: number, z: number) => boolean,
   ) {
     this.toScreen.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
@@ -40,7 +40,7 @@ export class ScreenBox implements SelectionBox {
   private hasCorner(mesh: Mesh): boolean {
     const corners = mesh.geometry.getAttribute("position") as BufferAttribute | undefined;
     if (!corners) return false;
-    const step = Math.max(1, Math.floor(corners.count / MOST_CORNERS));
+    const step = Math.max(1, Math.floor(corners.count / MAX_VERTICES));
     for (let i = 0; i < corners.count; i += step) {
       const { x, y, z } = this.point.fromBufferAttribute(corners, i).applyMatrix4(mesh.matrixWorld);
       if (this.hasPoint(x, y, z)) return true;
@@ -48,10 +48,10 @@ export class ScreenBox implements SelectionBox {
     return false;
   }
 
-  /** A rectangle within a large face has none of its corners in it. */
+  /** Tests rays: a rectangle within a large face contains none of its vertices. */
   private meetsRay(meshes: Mesh[]): boolean {
     const ray = new Raycaster();
-    ray.layers.enable(TOUCHED);
+    ray.layers.enable(PICKABLE);
     for (const u of [0.5, 0, 1]) {
       for (const v of [0.5, 0, 1]) {
         const at = new Vector2(this.low.x + (this.high.x - this.low.x) * u, this.low.y + (this.high.y - this.low.y) * v);

@@ -8,7 +8,7 @@ const FRAGMENT = /* glsl */ `
   void main() { gl_FragColor = vec4(texture2D(source, vUv).rgb, 1.0); }
 `;
 
-/** Antialiasing that can be left out frame by frame, which the browser's own cannot. */
+/** Antialiasing that can be switched off for single frames, unlike the browser's own. */
 export class Smoothing {
   private readonly target = new WebGLRenderTarget(1, 1, { samples: SAMPLES });
   private readonly quad = new ScreenQuad(
@@ -22,7 +22,7 @@ export class Smoothing {
   );
   private readonly size = new Vector2();
 
-  /** Runs `draw` with smooth edges. */
+  /** Runs `draw` with antialiasing. */
   render(renderer: WebGLRenderer, draw: () => void): void {
     renderer.getDrawingBufferSize(this.size);
     if (this.target.width !== this.size.x || this.target.height !== this.size.y) {

@@ -1,8 +1,8 @@
 import type { Material } from "three";
 import { SURFACE_LIGHT } from "./light";
 
-/** Has a surface shown in the soft light in place of the lights of the scene. */
-export function soft<T extends Material>(material: T): T {
+/** Gives a material the soft light instead of the lights of the scene. */
+export function withSoftLight<T extends Material>(material: T): T {
   material.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader
       .replace("#include <common>", `#include <common>\n${SURFACE_LIGHT}`)

@@ -13,7 +13,7 @@ import { WorldDrawing } from "./displays/world";
 import { Backdrop } from "./backdrop";
 import { Flash } from "./flash";
 import { FocalShape } from "./focal-shape";
-import { lookFirst, spanOf } from "./first-look";
+import { setInitialView, spanOf } from "./initial-view";
 import { FreeRoom } from "./free-room";
 import { FINEST, FrameLoop, type Detail } from "./frame-loop";
 import { frameMaps } from "./map-look";
@@ -29,9 +29,9 @@ import { RobotLight } from "./robot-light";
 import { hasOwnBackground } from "./surroundings";
 import { Viewport } from "./viewport";
 
-/** A robot whose links have no places yet is waited for no longer: some never get a transform. */
-const WAITS_FOR_PLACES_MS = 5000;
-const UNSMOOTHED: Detail = { ...FINEST, smooth: false };
+/** The stage counts as ready after this time even if no link has a pose: some robots never get a transform. */
+const POSE_TIMEOUT_MS = 5000;
+const NOT_ANTIALIASED: Detail = { ...FINEST, smooth: false };
 
 interface DrawnDisplay {
   display: DisplayState;
@@ -39,7 +39,7 @@ interface DrawnDisplay {
   pacing: Pacing;
 }
 
-/** The 3-D view: one drawing for each display, drawn when something changed. */
+/** The 3-D view, with one drawing for each display, drawn when something changed. */
 export class Stage {
   readonly viewport: Viewport;
   readonly picker: Picker;
@@ -48,20 +48,20 @@ export class Stage {
   private readonly drawings = new Map<string, DrawnDisplay>();
   private readonly outline: Outline;
   private readonly flash: Flash;
-  private readonly marks: InspectLayer;
+  private readonly inspectLayer: InspectLayer;
   private readonly focalShape = new FocalShape();
-  /** What only this view shows: handles, and the point that it turns about. */
-  readonly aids = new Group();
+  /** Objects that only this view shows: handles, and the mark of the focal point. */
+  readonly overlays = new Group();
   private interaction: Interaction = { enabled: false, hideOthers: false };
   private readonly robotLight = new RobotLight();
   private readonly backdrop = new Backdrop();
   private robotSettled = false;
-  /** The displays of which something was still being loaded in the last frame. */
+  /** The displays that were still loading something in the last frame. */
   private loading = "";
-  /** When the robot was drawn with all meshes, though nothing of it has a place. */
+  /** The time when all meshes were drawn but no link had a pose. */
   private placelessSince: number | null = null;
   /** The part of the canvas that nothing covers. */
-  readonly room: FreeRoom;
+  readonly freeRoom: FreeRoom;
 
   constructor(
     container: HTMLElement,
@@ -72,44 +72,44 @@ export class Stage {
     standIns: StandIns | null = null,
   ) {
     this.meshes = new MeshLibrary(session.meshProgress, files, standIns);
-    this.viewport = new Viewport(container, () => this.loop.redraw(UNSMOOTHED));
-    this.room = new FreeRoom(this.viewport, () => this.boundsOfRobots(), () => this.viewport.aim(session.view), () => this.loop.invalidate());
+    this.viewport = new Viewport(container, () => this.loop.redraw(NOT_ANTIALIASED));
+    this.freeRoom = new FreeRoom(this.viewport, () => this.boundsOfRobots(), () => this.viewport.aim(session.view), () => this.loop.invalidate());
     this.picker = new Picker(this.viewport, session, () => this.enabled());
     this.outline = new Outline(this.viewport);
     const invalidate = (): void => this.loop.invalidate();
     this.flash = new Flash(this.viewport, session, (display, link) => this.objectsOf(display, link), invalidate);
-    this.marks = new InspectLayer(session, (display) => this.boundsOf(display), invalidate);
+    this.inspectLayer = new InspectLayer(session, (display) => this.boundsOf(display), invalidate);
     session.displays.isLoading = ({ id }) => this.drawings.get(id)?.drawing.settled?.() === false;
-    this.aids.add(this.focalShape.root);
-    this.viewport.scene.add(this.aids, this.marks.root, this.robotLight.root, this.backdrop.root);
+    this.overlays.add(this.focalShape.root);
+    this.viewport.scene.add(this.overlays, this.inspectLayer.root, this.robotLight.root, this.backdrop.root);
     this.listen();
     this.matchDisplays();
   }
 
-  /** True once a frame with the robot or world, its meshes and its transforms was drawn, or the last do not come. */
+  /** Whether robot or world, their meshes and transforms have been drawn, or transforms failed to arrive in time. */
   get ready(): boolean {
     const since = this.placelessSince;
-    return this.robotSettled || (since !== null && performance.now() - since > WAITS_FOR_PLACES_MS);
+    return this.robotSettled || (since !== null && performance.now() - since > POSE_TIMEOUT_MS);
   }
 
-  /** True while the last frame shows all that there is: none is due. */
+  /** Whether the last frame shows the current state, so that none is due. */
   get settled(): boolean {
-    return this.loop.settled && ![...this.drawings.values()].some(({ pacing }) => pacing.waiting);
+    return this.loop.settled && ![...this.drawings.values()].some(({ pacing }) => pacing.isWaiting);
   }
 
-  /** Visuals of all robots drawn in the last frame. */
+  /** The number of visuals of all robots drawn in the last frame. */
   get visualsDrawn(): number {
     return this.robots().reduce((sum, robot) => sum + robot.visualsDrawn, 0);
   }
 
-  /** What a display draws, for tests. */
+  /** Returns what a display draws, for tests. */
   inspect(display: string): object | null {
     return this.drawings.get(display)?.drawing.inspect?.() ?? null;
   }
 
-  /** What is drawn of the invisible, for tests. */
+  /** What is drawn of invisible properties, for tests. */
   get inspected(): object {
-    return this.marks.inspect();
+    return this.inspectLayer.inspect();
   }
 
   set focalShapeVisible(visible: boolean) {
@@ -118,46 +118,46 @@ export class Stage {
     this.loop.invalidate();
   }
 
-  /** The scene as PNG, without what is selected or shown while the camera moves. */
+  /** Returns the scene as PNG, without marks of the selection and of camera motion. */
   async screenshot(scale: number): Promise<Blob | null> {
-    this.aids.visible = false;
+    this.overlays.visible = false;
     const screenshot = this.viewport.screenshot(scale);
-    this.aids.visible = true;
+    this.overlays.visible = true;
     this.draw(FINEST);
     return screenshot;
   }
 
-  /** Whether some display has things that the Interact tool moves. */
+  /** Whether a display has objects that the Interact tool can move. */
   get isInteractive(): boolean {
     return [...this.enabled()].some(([, drawing]) => "pointer" in drawing);
   }
 
-  /** Looks at the middle of the selection, or of all robots when nothing is selected. */
+  /** Looks at the centre of the selection, or of all selectable objects if nothing is selected. */
   focusSelected(): void {
-    const middle = this.picker.middleOfSelection();
+    const middle = this.picker.centerOfSelection();
     if (middle) this.session.view.lookAt(middle);
   }
 
-  /** Looks at the whole selection, or at all drawn objects when nothing is selected, from the side that the camera is at. */
+  /** Fits the whole selection, or everything if nothing is selected, into view from the current direction. */
   fit(): void {
     const box = this.picker.boundsOfSelection() ?? this.boundsOfAll();
-    if (box) this.session.view.fit(box, this.room.take());
+    if (box) this.session.view.fit(box, this.freeRoom.center());
   }
 
-  /** Looks at all of the robots, from the side that the camera is at. */
+  /** Fits all robots into view from the current direction. */
   fitRobots(): void {
-    const box = this.shapeOfRobots();
-    if (box) this.session.view.fit(box, this.room.take());
+    const box = this.spanOfRobots();
+    if (box) this.session.view.fit(box, this.freeRoom.center());
   }
 
-  /** Passes on to the drawings whether their markers can be moved now. */
+  /** Notifies the drawings of the state of the Interact tool. */
   setInteraction(interaction: Interaction): void {
     this.interaction = interaction;
     for (const { drawing } of this.drawings.values()) drawing.interactionChanged?.(interaction);
     this.loop.invalidate();
   }
 
-  /** The enabled displays by id. */
+  /** Returns the enabled displays by ID. */
   private *enabled(): Generator<readonly [string, Drawing]> {
     for (const [id, { display, drawing }] of this.drawings) if (display.enabled) yield [id, drawing];
   }
@@ -165,11 +165,11 @@ export class Stage {
   private listen(): void {
     const { session, loop } = this;
     const { displays, frames, view, selection } = session;
-    session.pace.software = this.viewport.software;
+    session.drawingPace.software = this.viewport.software;
     if (this.viewport.software !== null) loop.expectSlow();
-    loop.judged.on((late) => session.pace.frame(late));
-    session.pace.changed.on(() => {
-      this.viewport.foundSlow ||= session.pace.isSlow;
+    loop.judged.on((late) => session.drawingPace.countFrame(late));
+    session.drawingPace.changed.on(() => {
+      this.viewport.isSlow ||= session.drawingPace.isSlow;
       for (const display of displays.displays) this.propertiesChanged(display);
     });
     const invalidate = (): void => loop.invalidate();
@@ -185,7 +185,7 @@ export class Stage {
       drawn?.drawing.dataChanged?.(data);
       if (drawn?.display.enabled && !drawn.drawing.isElsewhere) loop.invalidate();
     });
-    session.data.forgotten.on(({ display, key }) => {
+    session.data.removed.on(({ display, key }) => {
       this.drawings.get(display)?.drawing.dataForgotten?.(key);
       loop.invalidate();
     });
@@ -195,12 +195,12 @@ export class Stage {
     selection.changed.on(() => this.selectionChanged());
     session.focus.hoverChanged.on(invalidate);
     session.time.wasReset.on(invalidate);
-    const dress = (theme: Theme): void => {
+    const applyTheme = (theme: Theme): void => {
       this.backdrop.theme = theme;
       invalidate();
     };
-    dress(this.theme.theme);
-    this.theme.changed.on(dress);
+    applyTheme(this.theme.theme);
+    this.theme.changed.on(applyTheme);
   }
 
   private matchDisplays(): void {
@@ -219,10 +219,10 @@ export class Stage {
       else if (Drawing && display.supported) {
         const { session, meshes, panels } = this;
         const invalidate = (): void => this.loop.invalidate();
-        const beside = (show: () => void): void => this.loop.beside(show);
+        const showWithFrame = (show: () => void): void => this.loop.schedule(show);
         const camera = (): Camera => this.viewport.camera;
         const affordsStudio = (): boolean => this.viewport.affordsStudio;
-        const drawing = new Drawing({ display, session, meshes, panels, invalidate, beside, camera, affordsStudio });
+        const drawing = new Drawing({ display, session, meshes, panels, invalidate, showWithFrame, camera, affordsStudio });
         this.drawings.set(display.id, { display, drawing, pacing: new Pacing(invalidate) });
         this.viewport.scene.add(drawing.root);
         drawing.interactionChanged?.(this.interaction);
@@ -231,7 +231,7 @@ export class Stage {
     }
     this.globalOptionsChanged();
     this.selectionChanged();
-    if (this.session.displays.known) this.loop.release();
+    if (this.session.displays.isKnown) this.loop.release();
   }
 
   private propertiesChanged(display: DisplayState): void {
@@ -255,7 +255,7 @@ export class Stage {
   private draw(detail: Detail): void {
     const { view } = this.session;
     this.viewport.share = detail.share;
-    frameMaps(this.enabled(), view, this.room);
+    frameMaps(this.enabled(), view, this.freeRoom);
     this.viewport.aim(view);
     this.focalShape.place(view);
     const { lighting } = this;
@@ -265,7 +265,7 @@ export class Stage {
     for (const { display, drawing, pacing } of this.drawings.values()) {
       drawing.root.visible = display.enabled;
       if (!display.enabled) continue;
-      if (pacing.due(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
+      if (pacing.isDue(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
       if (drawing.settled?.() === false) loading += ` ${display.id}`;
     }
     const settled = loading === "";
@@ -273,24 +273,24 @@ export class Stage {
       this.loading = loading;
       this.session.displays.statusChanged.emit(null);
     }
-    this.robotSettled ||= settled && [...this.robots(), ...this.worlds()].some((each) => each.isInPlace);
+    this.robotSettled ||= settled && [...this.robots(), ...this.worlds()].some((each) => each.hasPose);
     if (settled && this.session.robot !== null) this.placelessSince ??= now;
-    this.lookFirst(settled);
-    const ownLight = this.worlds().find((world) => world.ownLight)?.ownLight ?? this.robotLight.shine(this.worlds().length > 0 ? "Camera" : lighting, this.robots(), this.backgroundColor);
+    this.setInitialView(settled);
+    const ownLight = this.worlds().find((world) => world.ownLight)?.ownLight ?? this.robotLight.update(this.worlds().length > 0 ? "Camera" : lighting, this.robots(), this.backgroundColor);
     this.backdrop.root.visible = this.session.displays.hasBackdrop && !hasOwnBackground(ownLight);
     this.viewport.light(ownLight);
-    this.marks.update();
+    this.inspectLayer.update();
     this.outline.set(this.selectedObjects());
     const isMoving = detail.moving && ownLight === null;
-    if (isMoving) for (const [, drawing] of this.enabled()) drawing.move?.(this.viewport.drawn);
+    if (isMoving) for (const [, drawing] of this.enabled()) drawing.simplify?.(this.viewport.drawn);
     this.viewport.render(detail.smooth);
-    if (isMoving) for (const [, drawing] of this.enabled()) drawing.move?.(null);
+    if (isMoving) for (const [, drawing] of this.enabled()) drawing.simplify?.(null);
     this.outline.render();
     this.flash.render();
     this.drawElsewhere();
   }
 
-  /** What lights robots; a world is lit as its display says, and robots beside it likewise. */
+  /** The lighting of robots; a robot in a world is lit as the world's display specifies. */
   private get lighting(): Lighting {
     const [world] = this.worlds();
     if (world) return world.lighting === "Soft" ? "Soft" : "Camera";
@@ -299,19 +299,19 @@ export class Stage {
     return light === "Studio" || this.viewport.affordsStudio ? "Studio" : "Soft";
   }
 
-  /** Puts the camera that no user has placed before the robot, as far as the robot is complete, or into a complete world. */
-  private lookFirst(settled: boolean): void {
+  /** Places the camera if no user has: in front of the robot's visible parts, or into a world once it is complete. */
+  private setInitialView(settled: boolean): void {
     const { view } = this.session;
     const [robots, [world]] = [this.robots(), this.worlds()];
-    if (robots.length === 0 && world?.isInPlace) {
-      if (settled) lookFirst(world, view, this.viewport.size);
+    if (robots.length === 0 && world?.hasPose) {
+      if (settled) setInitialView(world, view, this.viewport.size);
     } else {
-      const seen = robots.flatMap((robot) => robot.seen || []).join(";");
+      const seen = robots.flatMap((robot) => robot.visibleKey || []).join(";");
       const fits = view.awaitsFit(seen);
       if (seen === "" || !(fits || view.awaitsSize)) return;
-      const box = this.shapeOfRobots();
-      if (box && fits) view.fitFirst(box, this.room.take(), seen);
-      if (box && settled) view.measured(box, Math.min(...robots.map((robot) => robot.ground())));
+      const box = this.spanOfRobots();
+      if (box && fits) view.fitFirst(box, this.freeRoom.center(), seen);
+      if (box && settled) view.reportSize(box, Math.min(...robots.map((robot) => robot.ground())));
     }
     this.viewport.aim(view);
   }
@@ -320,7 +320,7 @@ export class Stage {
     return [...this.enabled()].flatMap(([, drawing]) => (drawing instanceof RobotModelDrawing ? [drawing] : []));
   }
 
-  /** The simulated world, if one is shown, with the display's id. */
+  /** The simulated world, if one is shown, with the display's ID. */
   get world(): { id: string; drawing: WorldDrawing } | null {
     for (const [id, drawing] of this.enabled()) if (drawing instanceof WorldDrawing) return { id, drawing };
     return null;
@@ -334,36 +334,36 @@ export class Stage {
     return spanOf(this.robots().reduce((sum, robot) => sum.union(robot.bounds()), new Box3()));
   }
 
-  /** The box around all robots, with points of their surfaces. */
-  private shapeOfRobots(): Span | null {
+  /** Returns the bounding box of all robots, with sample points of their surfaces. */
+  private spanOfRobots(): Span | null {
     const box = this.boundsOfRobots();
     const points = this.robots().flatMap((robot) => robot.visibleMeshes.flatMap((mesh) => pointsOn(mesh)));
     return box && points.length > 0 ? { ...box, points } : box;
   }
 
-  /** The box around robots and the world's models; where there are none, around all that can be selected. */
+  /** Returns the bounding box of robots and the world's models; of all selectable objects if there are none. */
   private boundsOfAll(): Span | null {
     const worlds = this.worlds().reduce((sum, world) => sum.union(world.extents().world), new Box3());
     const robots = this.robots().reduce((sum, robot) => sum.union(robot.bounds()), worlds);
     return spanOf(robots) ?? this.picker.boundsOfAll();
   }
 
-  /** Has the displays draw that show the scene in panels of their own. */
+  /** Draws the displays that show the scene in their own panels. */
   private drawElsewhere(): void {
     const { renderer, scene } = this.viewport;
-    const view: DrawnScene = { renderer, scene, background: this.backgroundColor, showing: (accepts, draw) => this.showing(accepts, draw) };
-    for (const { display, drawing } of this.drawings.values()) if (display.enabled) drawing.drawn?.(view);
+    const view: DrawnScene = { renderer, scene, background: this.backgroundColor, withOnly: (accepts, draw) => this.withOnly(accepts, draw) };
+    for (const { display, drawing } of this.drawings.values()) if (display.enabled) drawing.afterFrame?.(view);
   }
 
-  private showing(accepts: (display: DisplayState) => boolean, draw: () => void): void {
-    const beside = [this.aids, this.backdrop.root, this.robotLight.root].filter((each) => each.visible);
-    for (const each of beside) each.visible = false;
+  private withOnly(accepts: (display: DisplayState) => boolean, draw: () => void): void {
+    const decorations = [this.overlays, this.backdrop.root, this.robotLight.root].filter((each) => each.visible);
+    for (const decoration of decorations) decoration.visible = false;
     for (const { display, drawing } of this.drawings.values()) {
       drawing.root.visible = display.enabled && accepts(display);
     }
     draw();
     for (const { display, drawing } of this.drawings.values()) drawing.root.visible = display.enabled;
-    for (const each of beside) each.visible = true;
+    for (const decoration of decorations) decoration.visible = true;
   }
 
   private selectionChanged(): void {
@@ -392,7 +392,7 @@ export class Stage {
     return (drawn?.display.enabled && drawn.drawing.objectsOf?.(key)) || [];
   }
 
-  /** The box around what a display draws, in the fixed frame, m. */
+  /** Returns the bounding box of what a display draws, in the fixed frame, m. */
   boundsOf(display: string): Box3 {
     const drawn = this.drawings.get(display);
     return drawn ? new Box3().expandByObject(drawn.drawing.root) : new Box3();

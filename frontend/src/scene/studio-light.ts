@@ -11,27 +11,27 @@ import {
   type SpotLight,
 } from "three";
 
-/** A surface that faces a light of this strength has exactly its own colour. */
-export const FULL = Math.PI;
-/** Strength of the lamp of the studio, and the direction in which it shines on worlds. */
+/** The light intensity at which a surface facing the light has exactly its own colour. */
+export const FULL_INTENSITY = Math.PI;
+/** The intensity of the studio's lamp, and its direction in worlds. */
 export const STUDIO_KEY = 0.74;
 export const STUDIO_DIRECTION = new Vector3(0.45, 0.6, -1).normalize();
-/** Robots look along x, and are looked at first from between x and y: the lamp is before them, at that side. */
+/** Robots face along x and are first viewed from between x and y: the lamp is in front of them, on that side. */
 const ROBOT_DIRECTION = new Vector3(-0.8, -0.15, -1).normalize();
 const STUDIO_SKY = 0.42;
 const STUDIO_GROUND = 0.16;
-/** Pixels of a shadow map along its side. */
+/** Pixels along each side of a shadow map. */
 const SHADOW_PIXELS = 2048;
-/** Pixels of the map that the edge of a shadow is wide; around a robot they are small. */
+/** The width of a shadow's edge in pixels of the map, which are small around a robot. */
 const [SHADOW_EDGE, ROBOT_SHADOW_EDGE] = [3, 8];
-/** How dark a shadow on the ground is. */
-const SHADOW = 0.35;
-/** The width of the ground that shadows fall on, in sizes of the objects on it. */
+/** The darkness of shadows on the ground. */
+const SHADOW_OPACITY = 0.35;
+/** The width of the ground that receives shadows, in sizes of the objects on it. */
 const GROUND_WIDTH = 6;
 
-/** The light that comes from all sides, more from above. */
+/** Returns light from all directions, brighter from above. */
 export function studioSky(): HemisphereLight {
-  const sky = new HemisphereLight(0xffffff, 0xffffff, STUDIO_SKY * FULL);
+  const sky = new HemisphereLight(0xffffff, 0xffffff, STUDIO_SKY * FULL_INTENSITY);
   sky.groundColor.setScalar(STUDIO_GROUND / STUDIO_SKY);
   sky.position.set(0, 0, 1);
   return sky;
@@ -46,7 +46,7 @@ export function castShadows(light: DirectionalLight | SpotLight): void {
   light.shadow.radius = SHADOW_EDGE;
 }
 
-/** Puts a sun just outside of a ball, so that the shadows in it are as fine as they can be. */
+/** Places a sun just outside a sphere, so that the shadows within it have the highest resolution. */
 export function aimSun(light: DirectionalLight, direction: Vector3, middle: Vector3, radius: number): void {
   light.target.position.copy(middle);
   light.position.copy(middle).addScaledVector(direction, -2 * radius);
@@ -55,20 +55,20 @@ export function aimSun(light: DirectionalLight, direction: Vector3, middle: Vect
   camera.updateProjectionMatrix();
 }
 
-/** Makes surfaces cast and receive shadows, or not. */
-export function shade(root: Object3D, shadowed: boolean): void {
+/** Sets whether objects cast and receive shadows. */
+export function setShadowed(root: Object3D, shadowed: boolean): void {
   root.traverse((object) => {
     if (object instanceof Mesh) object.castShadow = object.receiveShadow = shadowed;
   });
 }
 
-/** A lamp from the side, light from the sky, and a ground that is seen only where shadows fall on it. */
+/** A lamp from the side, light from the sky, and a ground that is visible only in shadows. */
 export class StudioLight {
   readonly root = new Group();
-  private readonly key = new DirectionalLight(0xffffff, STUDIO_KEY * FULL);
+  private readonly key = new DirectionalLight(0xffffff, STUDIO_KEY * FULL_INTENSITY);
   private readonly ground = new Mesh(
     new PlaneGeometry(),
-    new ShadowMaterial({ opacity: SHADOW, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }),
+    new ShadowMaterial({ opacity: SHADOW_OPACITY, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }),
   );
 
   constructor() {
@@ -79,13 +79,13 @@ export class StudioLight {
     this.root.visible = false;
   }
 
-  /** Shines on the objects in a box, in the fixed frame, on a ground at this height, m. */
-  shineOn(box: Box3, height: number): void {
+  /** Lights the objects in a box, in the fixed frame, on a ground at this height, m. */
+  update(box: Box3, height: number): void {
     this.ground.visible = !box.isEmpty();
     if (box.isEmpty()) return;
     const middle = box.getCenter(new Vector3());
     const radius = box.getSize(new Vector3()).length() / 2;
-    // As far as the shadow of the highest point falls.
+    // Include the shadow of the highest point.
     aimSun(this.key, ROBOT_DIRECTION, middle, 1.5 * radius);
     this.key.shadow.normalBias = radius / 100;
     this.ground.position.set(middle.x, middle.y, height);

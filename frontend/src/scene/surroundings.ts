@@ -1,17 +1,17 @@
 import { Color, DataTexture, EquirectangularReflectionMapping, Fog, FogExp2, LinearFilter, type Scene } from "three";
 import type { FogScene } from "../protocol";
 
-/** The background of a world: a colour, or a sky, and fog. */
+/** The surroundings of a world: a background colour or a sky, and fog. */
 export interface Surroundings {
   readonly background: string | null;
-  /** How bright the sky is, from 0 to 1; null for none. */
+  /** The brightness of the sky, from 0 to 1; null for no sky. */
   readonly daylight: number | null;
   readonly fog: FogScene | null;
-  /** A colour that is brighter towards the horizon, in place of a sky. */
+  /** A background colour, brighter towards the horizon, instead of a sky. */
   readonly backdrop?: string | null;
 }
 
-/** The lighting of a world or a studio: whether with shadows, and its background. */
+/** The lighting of a world or a studio: whether it casts shadows, and its surroundings. */
 export interface OwnLight extends Surroundings {
   readonly shadows: boolean;
 }
@@ -22,40 +22,40 @@ export function hasOwnBackground(light: OwnLight | null): boolean {
 }
 
 type Rgb = readonly [number, number, number];
-/** The colours at the nadir, at the horizon and at the zenith. */
+/** The colours at the nadir, the horizon and the zenith. */
 type Sky = readonly [below: Rgb, middle: Rgb, above: Rgb];
 
-/** From the nadir to the zenith. */
-const HEIGHT = 64;
+/** The pixels of a sky texture from the nadir to the zenith. */
+const SKY_PIXELS = 64;
 /** How much brighter a backdrop is at its horizon. */
-const HORIZON = 0.18;
+const HORIZON_BRIGHTNESS = 0.18;
 const DAY: Sky = [[0.42, 0.44, 0.45], [0.8, 0.86, 0.92], [0.31, 0.52, 0.82]];
 const NIGHT: Sky = [[0.05, 0.05, 0.06], [0.1, 0.11, 0.17], [0.02, 0.03, 0.08]];
 
-/** Gives a scene its surroundings; makes the parts that stay the same once. */
+/** Sets the surroundings of a scene, and keeps textures that do not change. */
 export class SkyAndFog {
   private sky: DataTexture | null = null;
-  private made: number | string | null = null;
-  private fogged = "";
+  private skyKey: number | string | null = null;
+  private fogKey = "";
 
   constructor(private readonly scene: Scene) {
-    // The image of a sky has y up.
+    // Sky textures have y up.
     scene.backgroundRotation.x = Math.PI / 2;
   }
 
-  /** `flat`: the camera sees in parallel, and of a sky the same everywhere. */
+  /** Applies surroundings; `flat` for an orthographic camera, which sees the same colour of a sky everywhere. */
   set({ daylight, fog, backdrop = null }: Surroundings, flat: boolean): void {
     const wanted = daylight ?? backdrop;
-    if (wanted !== this.made) {
+    if (wanted !== this.skyKey) {
       this.sky?.dispose();
       this.sky = wanted === null ? null : skyTexture(typeof wanted === "number" ? skyAt(wanted) : skyOf(wanted));
-      this.made = wanted;
+      this.skyKey = wanted;
     }
     if (!flat) this.scene.background = this.sky;
     else this.scene.background = daylight === null ? null : new Color(...skyAt(daylight)[1]);
     const key = JSON.stringify(fog);
-    if (key === this.fogged) return;
-    this.fogged = key;
+    if (key === this.fogKey) return;
+    this.fogKey = key;
     this.scene.fog = fog ? fogOf(fog) : null;
   }
 }
@@ -65,7 +65,7 @@ function fogOf({ color: [r = 1, g = 1, b = 1], start, end, density }: FogScene):
   return density === null ? new Fog(hex, start, end) : new FogExp2(hex, density);
 }
 
-/** The colour of a sky: at -1 below, 0 at the horizon, 1 above. */
+/** Returns the colour of a sky at a height: -1 nadir, 0 horizon, 1 zenith. */
 function colorAt(height: number, [below, middle, above]: Sky): Rgb {
   return height < 0 ? mix(middle, below, Math.min(1, -8 * height)) : mix(middle, above, Math.sqrt(height));
 }
@@ -74,11 +74,11 @@ function skyAt(daylight: number): Sky {
   return [mix(NIGHT[0], DAY[0], daylight), mix(NIGHT[1], DAY[1], daylight), mix(NIGHT[2], DAY[2], daylight)];
 }
 
-/** A backdrop of a colour. */
+/** Returns a backdrop of a colour. */
 function skyOf(color: string): Sky {
   const { r, g, b } = new Color(color);
   const own: Rgb = [r, g, b];
-  return [own, mix(own, [1, 1, 1], HORIZON), own];
+  return [own, mix(own, [1, 1, 1], HORIZON_BRIGHTNESS), own];
 }
 
 function mix(a: Rgb, b: Rgb, share: number): Rgb {
@@ -87,12 +87,12 @@ function mix(a: Rgb, b: Rgb, share: number): Rgb {
 }
 
 function skyTexture(sky: Sky): DataTexture {
-  const pixels = new Uint8Array(4 * HEIGHT);
-  for (let row = 0; row < HEIGHT; row++) {
-    const rgb = colorAt(Math.sin(((row + 0.5) / HEIGHT - 0.5) * Math.PI), sky);
+  const pixels = new Uint8Array(4 * SKY_PIXELS);
+  for (let row = 0; row < SKY_PIXELS; row++) {
+    const rgb = colorAt(Math.sin(((row + 0.5) / SKY_PIXELS - 0.5) * Math.PI), sky);
     pixels.set([...rgb.map((each) => Math.round(255 * each)), 255], 4 * row);
   }
-  const texture = new DataTexture(pixels, 1, HEIGHT);
+  const texture = new DataTexture(pixels, 1, SKY_PIXELS);
   texture.mapping = EquirectangularReflectionMapping;
   texture.magFilter = texture.minFilter = LinearFilter;
   texture.needsUpdate = true;

@@ -1,15 +1,15 @@
 import { Signal } from "../signal";
 
 const FRAME_RATE = 30;
-/** So often a still scene is drawn, or there would be nothing to record: browsers take a canvas when it is painted. */
+/** The interval at which a still scene is redrawn: browsers record a canvas only when it is painted. */
 const STILL_PERIOD_MS = 100;
 const BITS_PER_SECOND = 8_000_000;
-/** The first that the browser can record. */
+/** The formats in order of preference. */
 const TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
 
-/** Records what a canvas shows; `redraw` has it painted again. */
+/** Records a canvas as video; `redraw` repaints the canvas. */
 export class VideoRecorder {
-  /** It began, continued for another second, or ended. */
+  /** Recording started, continued for another second, or stopped. */
   readonly changed = new Signal();
   private recorder: MediaRecorder | null = null;
   private beganAt = 0;
@@ -30,7 +30,7 @@ export class VideoRecorder {
     return this.recorder !== null;
   }
 
-  /** Since the beginning, s. */
+  /** The duration so far, s. */
   get seconds(): number {
     return this.recorder ? Math.floor((performance.now() - this.beganAt) / 1000) : 0;
   }
@@ -64,7 +64,7 @@ export class VideoRecorder {
   }
 }
 
-/** Minutes and seconds. */
+/** Returns minutes and seconds. */
 export function timeText(seconds: number): string {
   return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
 }

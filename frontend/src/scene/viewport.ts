@@ -21,57 +21,60 @@ import { SkyAndFog, type OwnLight } from "./surroundings";
 
 const LARGEST_PIXEL_RATIO = 2;
 const FAR_CLIP = 1000;
-/** From farther away than so many near clip distances, that is moved off: depths are distinguished less and less. */
-const DEEPEST = 2000;
-/** The share of the camera's light beside lights in the scene. */
-const FAINT = 0.15;
+/**
+ * The largest ratio of the distance and the near clip distance; from farther away, the near clip distance grows,
+ * because depths become imprecise.
+ */
+const MAX_DEPTH_RATIO = 2000;
+/** The intensity of the camera's light while lights in the scene are used. */
+const FAINT_LIGHT = 0.15;
 const NOTHING = { background: null, daylight: null, fog: null };
-/** What programs call themselves that draw on the processor. */
+/** The names of renderers that run on the CPU. */
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
-/** Longest side of an image, pixels. */
+/** The longest side of a screenshot, pixels. */
 const LARGEST_SCREENSHOT = 8192;
 
-// RViz writes colours to the screen as they are in the URDF; a surface facing the camera shows exactly its colour.
+// RViz writes colours to the screen as in the URDF; a surface facing the camera has exactly its colour.
 ColorManagement.enabled = false;
 
-/** Canvas, camera and the light that follows the camera. */
+/** The canvas, its camera, and the light that follows the camera. */
 export class Viewport {
   readonly scene = new Scene();
   private readonly perspective = new PerspectiveCamera((FIELD_OF_VIEW * 180) / Math.PI, 1, 0.01, FAR_CLIP);
   private readonly orthographic = new OrthographicCamera();
-  private inUse: PerspectiveCamera | OrthographicCamera = this.perspective;
+  private activeCamera: PerspectiveCamera | OrthographicCamera = this.perspective;
   readonly renderer: WebGLRenderer;
   private readonly smoothing = new Smoothing();
-  private part = 1;
-  /** How far left of the middle of the canvas is what the camera looks at, pixels. */
-  aside = 0;
-  /** How far below it, pixels. */
-  below = 0;
+  private resolution = 1;
+  /** The shift of the camera's centre to the left of the canvas's centre, pixels. */
+  shiftLeft = 0;
+  /** The shift of the camera's centre downwards, pixels. */
+  shiftDown = 0;
   private readonly ambient = new AmbientLight(0xffffff, AMBIENT * Math.PI);
-  private readonly around = new SkyAndFog(this.scene);
+  private readonly surroundings = new SkyAndFog(this.scene);
   private ownBackground = "#303030";
-  private drawnBy: string | null = null;
-  /** Frames came late; it stays so, as light that comes and goes is worse than either. */
-  foundSlow = false;
+  private rendererName: string | null = null;
+  /** Whether frames were late. It stays set, because light that changes back and forth is worse than either light. */
+  isSlow = false;
   private readonly headlight = new DirectionalLight(0xffffff, (1 - AMBIENT) * Math.PI);
 
   constructor(readonly container: HTMLElement, resized: () => void) {
     this.renderer = makeRenderer();
-    // Asking whether the shaders compiled waits for them; only we could do something about it.
+    // Reading the result of compilation blocks until shaders are compiled, and only developers can act on it.
     this.renderer.debug.checkShaderErrors = import.meta.env.DEV;
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.renderer.setClearColor(0x303030);
     this.perspective.matrixAutoUpdate = this.orthographic.matrixAutoUpdate = false;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.scene.add(this.ambient, this.headlight, this.headlight.target);
-    // Before anything is drawn it is black, and its box is seen in its place.
+    // Before the first frame, the canvas is black: hide it so that its container shows.
     this.canvas.style.visibility = "hidden";
     container.prepend(this.canvas);
     new ResizeObserver(() => {
-      this.fit();
+      this.resize();
       resized();
     }).observe(container);
-    this.fit();
+    this.resize();
   }
 
   get canvas(): HTMLCanvasElement {
@@ -83,63 +86,65 @@ export class Viewport {
     this.renderer.setClearColor(new Color(color));
   }
 
-  /** Whether a light with shadows does not make the page slow: a graphics card draws, and was not found slow. */
+  /** Whether a light with shadows would not make the page slow: a GPU draws, and was not found slow. */
   get affordsStudio(): boolean {
-    return this.software === null && !this.foundSlow;
+    return this.software === null && !this.isSlow;
   }
 
-  /** The name of a renderer that draws with the processor; null where a graphics card draws. */
+  /** The name of a renderer on the CPU; null if a GPU draws. */
   get software(): string | null {
-    this.drawnBy ??= nameOfRenderer(this.renderer.getContext());
-    return SOFTWARE.test(this.drawnBy) ? (/SwiftShader|llvmpipe|softpipe|Basic Render/i.exec(this.drawnBy)?.[0] ?? this.drawnBy) : null;
+    this.rendererName ??= nameOfRenderer(this.renderer.getContext());
+    return SOFTWARE.test(this.rendererName) ? (/SwiftShader|llvmpipe|softpipe|Basic Render/i.exec(this.rendererName)?.[0] ?? this.rendererName) : null;
   }
 
-  /** Lights the scene: by the camera (null), or by lights in it, which leave the camera a faint light. */
+  /**
+   * Lights the scene: by the camera's light (null), or by lights in the scene, which leave the camera a faint light.
+   */
   light(own: OwnLight | null): void {
     const { renderer } = this;
-    this.headlight.intensity = (own ? FAINT : 1 - AMBIENT) * Math.PI;
+    this.headlight.intensity = (own ? FAINT_LIGHT : 1 - AMBIENT) * Math.PI;
     this.ambient.intensity = own ? 0 : AMBIENT * Math.PI;
     renderer.shadowMap.enabled = own?.shadows ?? false;
     renderer.setClearColor(new Color(own?.background ?? this.ownBackground));
-    this.around.set(own ?? NOTHING, this.inUse === this.orthographic);
+    this.surroundings.set(own ?? NOTHING, this.activeCamera === this.orthographic);
   }
 
-  /** The camera in use: views differ in their projection. */
+  /** The current camera: views differ in their projection. */
   get camera(): PerspectiveCamera | OrthographicCamera {
-    return this.inUse;
+    return this.activeCamera;
   }
 
-  /** Puts the camera where the view says. */
+  /** Moves the camera to the pose of the view. */
   aim(view: ViewState): void {
     const seen = view.camera;
-    this.inUse = seen.scale === null ? this.perspective : this.orthographic;
+    this.activeCamera = seen.scale === null ? this.perspective : this.orthographic;
     this.project(seen, number(view.values, "Near Clip Distance", 0.01));
-    this.shift();
-    this.inUse.matrix
+    this.applyShift();
+    this.activeCamera.matrix
       .makeBasis(new Vector3(...seen.right), new Vector3(...seen.up), new Vector3(...seen.back))
       .setPosition(...seen.position);
-    this.inUse.updateMatrixWorld(true);
+    this.activeCamera.updateMatrixWorld(true);
     this.headlight.position.set(...seen.back);
   }
 
-  /** The share of the screen's pixels along a side that is drawn; the image is as large as before. */
+  /** The share of the screen's pixels drawn along each side; the size of the image on the page does not change. */
   set share(share: number) {
-    if (share === this.part) return;
-    this.part = share;
-    this.fit();
+    if (share === this.resolution) return;
+    this.resolution = share;
+    this.resize();
   }
 
-  /** The size of the canvas, pixels. */
+  /** The size of the canvas, CSS pixels. */
   get size(): ViewSize {
     return { width: Math.max(1, this.canvas.clientWidth), height: Math.max(1, this.canvas.clientHeight) };
   }
 
-  /** The camera of the next frame, and the height of the image in its own pixels. */
+  /** The camera of the next frame, and the height of the frame in its own pixels. */
   get drawn(): { camera: PerspectiveCamera | OrthographicCamera; height: number } {
-    return { camera: this.inUse, height: this.canvas.height };
+    return { camera: this.activeCamera, height: this.canvas.height };
   }
 
-  /** Draws the scene; `fine` smooths its edges. */
+  /** Draws the scene; with antialiasing if `fine`. */
   render(fine: boolean): void {
     const draw = (): void => this.renderer.render(this.scene, this.camera);
     if (fine) this.smoothing.render(this.renderer, draw);
@@ -147,7 +152,7 @@ export class Viewport {
     this.canvas.style.visibility = "";
   }
 
-  /** The scene as PNG, so many times as large as the canvas, or as large as the graphics can. */
+  /** Returns the scene as PNG, enlarged by `scale` relative to the canvas, as far as the GPU permits. */
   screenshot(scale: number): Promise<Blob | null> {
     const { renderer, canvas } = this;
     const { width, height } = this.size;
@@ -155,9 +160,9 @@ export class Viewport {
     renderer.setPixelRatio(Math.min(scale, largest));
     renderer.setSize(width, height, false);
     this.render(true);
-    // The drawn frame exists until the browser continues.
+    // The frame is available only until the browser regains control.
     const screenshot = new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
-    this.fit();
+    this.resize();
     return screenshot;
   }
 
@@ -171,26 +176,29 @@ export class Viewport {
       return;
     }
     const distance = seen.focal ? distanceBetween(seen.position, seen.focal) : 0;
-    const clip = { near: Math.max(near, distance / DEEPEST), far: Math.max(FAR_CLIP, distance * 10) };
+    const clip = { near: Math.max(near, distance / MAX_DEPTH_RATIO), far: Math.max(FAR_CLIP, distance * 10) };
     Object.assign(perspective, { aspect: width / height, ...clip });
     perspective.updateProjectionMatrix();
   }
 
-  private shift(): void {
+  private applyShift(): void {
     const { width, height } = this.size;
-    if (this.aside !== 0 || this.below !== 0) this.inUse.setViewOffset(width, height, this.aside, -this.below, width, height);
-    else if (this.inUse.view?.enabled === true) this.inUse.clearViewOffset();
+    if (this.shiftLeft !== 0 || this.shiftDown !== 0) this.activeCamera.setViewOffset(width, height, this.shiftLeft, -this.shiftDown, width, height);
+    else if (this.activeCamera.view?.enabled === true) this.activeCamera.clearViewOffset();
   }
 
-  private fit(): void {
+  private resize(): void {
     const width = Math.max(1, this.container.clientWidth);
     const height = Math.max(1, this.container.clientHeight);
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, LARGEST_PIXEL_RATIO) * this.part);
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, LARGEST_PIXEL_RATIO) * this.resolution);
     this.renderer.setSize(width, height);
   }
 }
 
-/** Nothing is seen through the canvas, which spares the browser to draw what is behind it; three.js does not offer that. */
+/**
+ * Creates the renderer. Its canvas is opaque, which spares the browser from drawing what is behind; three.js has no
+ * option for that.
+ */
 function makeRenderer(): WebGLRenderer {
   const canvas = document.createElement("canvas");
   const options = { antialias: false, powerPreference: "high-performance" } as const;
@@ -198,8 +206,8 @@ function makeRenderer(): WebGLRenderer {
   return new WebGLRenderer(context ? { ...options, canvas, context } : options);
 }
 
-/** The name of the renderer, as the graphics driver gives it; empty where the browser does not tell. */
+/** Returns the name of the renderer from the graphics driver; empty if the browser does not reveal it. */
 function nameOfRenderer(gl: WebGLRenderingContext | WebGL2RenderingContext): string {
-  const said = gl.getExtension("WEBGL_debug_renderer_info");
-  return String(gl.getParameter(said ? said.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  const extension = gl.getExtension("WEBGL_debug_renderer_info");
+  return String(gl.getParameter(extension ? extension.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
 }

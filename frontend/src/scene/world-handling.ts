@@ -7,39 +7,42 @@ import type { Stage } from "./stage";
 import { ThinLines } from "./objects/thin-lines";
 import type { ToolEvent } from "./tools/tool";
 
-/** The tools that leave the mouse to what is done to models. */
+/** The tools that leave mouse events on models to other handlers. */
 export const HANDLING_TOOLS = ["rviz_default_plugins/Interact", "rviz_default_plugins/MoveCamera"];
-/** Of one page, at most so often. */
+/** ms; the minimum time between two requests of a page. */
 const PERIOD_MS = 50;
-/** Newtons for each metre between the point of a link that is pulled and the mouse. */
+/** The force in N per m between the pulled point of a link and the mouse. */
 const STIFFNESS = 50;
 const PULL_COLOR = "#ff2f6d";
-/** Drawn after all else, to be seen through it. */
-const LAST = 1000;
+/** Drawn last, to be visible through everything. */
+const RENDER_ORDER = 1000;
 
-/** What is held: a point of a link in the link's frame, where it was in the fixed frame, and the plane it is dragged in. */
-interface Hold {
+/**
+ * The drag in progress: a point of a link in the link's frame, its position at the start in the fixed frame, and the
+ * plane of the drag.
+ */
+interface ModelGrab {
   readonly drawing: WorldDrawing;
   readonly link: string;
   readonly point: Vector3;
   readonly start: Vector3;
   readonly plane: Plane;
-  readonly pushes: boolean;
+  readonly isPull: boolean;
   lastMs: number;
   offset: Vector3;
-  /** Where the mouse is, in the fixed frame, of a pull. */
+  /** The position of the mouse in the fixed frame during a pull. */
   readonly target: Vector3;
-  /** Repeats the force while the mouse stands still; 0 for none. */
+  /** The timer that repeats the force while the mouse rests; 0 for none. */
   timer: number;
 }
 
 /**
- * Handles the mouse on models of a simulated world: Ctrl moves one along the ground, Ctrl and Shift pull it by a force,
- * and a click with the right button opens its menu.
+ * Handles the mouse on models of a simulated world: Ctrl moves a model along the ground, Ctrl and Shift pull it with a
+ * force, and a right click opens its menu.
  */
 export class WorldHandling {
-  private hold: Hold | null = null;
-  /** From the point that is pulled to the mouse. */
+  private grabbed: ModelGrab | null = null;
+  /** The line from the pulled point to the mouse. */
   private readonly line = new ThinLines();
 
   constructor(
@@ -48,16 +51,16 @@ export class WorldHandling {
   ) {
     this.line.setStyle(PULL_COLOR, 1);
     this.line.root.material.depthTest = false;
-    this.line.root.renderOrder = LAST;
+    this.line.root.renderOrder = RENDER_ORDER;
     stage.viewport.scene.add(this.line.root);
     session.simulation.freePlace = () => stage.world?.drawing.freePlace() ?? [0, 0, 0];
   }
 
-  /** False for an event that the tool in hand should have. */
+  /** Handles an event; returns false if it is left to the active tool. */
   pointer(event: ToolEvent): boolean {
-    if (this.hold) {
-      if (event.type === "move" && event.left) this.move(this.hold, event);
-      else if (event.type === "up" && !event.left) this.letGo(this.hold);
+    if (this.grabbed) {
+      if (event.type === "move" && event.left) this.move(this.grabbed, event);
+      else if (event.type === "up" && !event.left) this.release(this.grabbed);
       return true;
     }
     const { simulation, modelling, tools } = this.session;
@@ -75,17 +78,17 @@ export class WorldHandling {
     const normal = event.shift ? camera.getWorldDirection(new Vector3()) : new Vector3(0, 0, 1);
     const plane = new Plane().setFromNormalAndCoplanarPoint(normal, at);
     const point = at.clone().applyMatrix4(matrix.clone().invert());
-    this.hold = { drawing, link, point, start: at.clone(), plane, pushes: event.shift, lastMs: -Infinity, offset: new Vector3(), target: at.clone(), timer: 0 };
-    if (event.shift) this.hold.timer = window.setInterval(() => this.pullOn(), PERIOD_MS);
+    this.grabbed = { drawing, link, point, start: at.clone(), plane, isPull: event.shift, lastMs: -Infinity, offset: new Vector3(), target: at.clone(), timer: 0 };
+    if (event.shift) this.grabbed.timer = window.setInterval(() => this.repeatPull(), PERIOD_MS);
     this.stage.viewport.canvas.style.cursor = "grabbing";
     if (!event.shift) this.session.simulation.drag(modelOf(link), [0, 0, 0], true);
     return true;
   }
 
-  private move(hold: Hold, event: ToolEvent): void {
+  private move(hold: ModelGrab, event: ToolEvent): void {
     const to = this.stage.picker.rayAt(event.x, event.y).ray.intersectPlane(hold.plane, new Vector3());
     if (!to) return;
-    if (hold.pushes) {
+    if (hold.isPull) {
       hold.target.copy(to);
       return;
     }
@@ -97,31 +100,31 @@ export class WorldHandling {
     this.send(hold);
   }
 
-  /** Pulls the point that is held towards the mouse, wherever both are by now. */
-  private pullOn(): void {
-    const { hold } = this;
-    const matrix = hold?.drawing.poseOf(hold.link);
-    if (!hold || !matrix) return;
-    const from = hold.point.clone().applyMatrix4(matrix);
-    hold.offset = hold.target.clone().sub(from);
-    this.line.setSegments(new Float32Array([...from.toArray(), ...hold.target.toArray()]));
+  /** Pulls the grabbed point towards the mouse from their current positions. */
+  private repeatPull(): void {
+    const { grabbed } = this;
+    const matrix = grabbed?.drawing.poseOf(grabbed.link);
+    if (!grabbed || !matrix) return;
+    const from = grabbed.point.clone().applyMatrix4(matrix);
+    grabbed.offset = grabbed.target.clone().sub(from);
+    this.line.setSegments(new Float32Array([...from.toArray(), ...grabbed.target.toArray()]));
     this.stage.loop.invalidate();
-    this.send(hold);
+    this.send(grabbed);
   }
 
-  private letGo(hold: Hold): void {
-    if (!hold.pushes) this.send(hold);
+  private release(hold: ModelGrab): void {
+    if (!hold.isPull) this.send(hold);
     clearInterval(hold.timer);
     this.line.setSegments(new Float32Array(0));
     this.stage.loop.invalidate();
-    this.hold = null;
+    this.grabbed = null;
     this.stage.viewport.canvas.style.cursor = "default";
   }
 
-  private send({ drawing, link, point, offset, pushes }: Hold): void {
+  private send({ drawing, link, point, offset, isPull }: ModelGrab): void {
     const { simulation } = this.session;
-    const inWorld = drawing.toWorld(offset);
-    if (pushes) simulation.push(link, point.toArray(), inWorld.multiplyScalar(STIFFNESS).toArray());
+    const inWorld = drawing.directionToWorld(offset);
+    if (isPull) simulation.push(link, point.toArray(), inWorld.multiplyScalar(STIFFNESS).toArray());
     else simulation.drag(modelOf(link), inWorld.toArray(), false);
   }
 
@@ -132,7 +135,7 @@ export class WorldHandling {
     const at = found?.at ?? this.stage.picker.groundAt(event.x, event.y);
     const place = at instanceof Vector3 ? at.toArray() : at;
     if (!place) return;
-    const choices = [{ label: words.spawnHere, run: () => simulation.spawnAsked.emit(found ? found.drawing.placeInWorld(place) : place) }];
+    const choices = [{ label: words.spawnHere, run: () => simulation.spawnRequested.emit(found ? found.drawing.pointToWorld(place) : place) }];
     if (found) {
       const model = modelOf(found.link);
       const frame = found.link.split("::").at(-1) ?? "";
@@ -142,9 +145,9 @@ export class WorldHandling {
     sceneMenu.emit({ x: event.x, y: event.y, choices });
   }
 
-  /** The link of a world under the pointer. */
+  /** Returns the link of a world under the pointer. */
   private find(event: ToolEvent): { drawing: WorldDrawing; link: string; at: Vector3; matrix: Matrix4 | null } | null {
-    const found = this.stage.picker.at(event.x, event.y);
+    const found = this.stage.picker.objectAt(event.x, event.y);
     if (!(found?.drawing instanceof WorldDrawing)) return null;
     const { key, point } = found.hit;
     return { drawing: found.drawing, link: key, at: point.clone(), matrix: found.drawing.poseOf(key) };

@@ -13,23 +13,23 @@ import {
 } from "three";
 import type { LightScene, WorldScene } from "../protocol";
 import type { PropertyRows } from "../state/properties";
-import { standsInScene, type Lighting } from "./light";
-import { aimSun, castShadows, FULL, shade, STUDIO_DIRECTION, STUDIO_KEY, studioSky } from "./studio-light";
+import { usesSceneLights, type Lighting } from "./light";
+import { aimSun, castShadows, FULL_INTENSITY, setShadowed, STUDIO_DIRECTION, STUDIO_KEY, studioSky } from "./studio-light";
 
-/** Shadows are drawn this far around the middle of the drawn objects at most, m. */
-const LARGEST_RADIUS = 25;
-/** Metres between a lamp and what it lights, as a rule. */
-const SEEN_FROM = 3;
-/** So many lights have shadows; each is another image of the scene. */
-const MOST_SHADOWS = 2;
-/** So many lights of a world are lit: each costs every pixel. */
-const MOST_LIGHTS = 8;
+/** The maximum radius around the centre of the drawn objects in which shadows are drawn, m. */
+const MAX_SHADOW_RADIUS = 25;
+/** The assumed distance between a lamp and the objects that it lights, m. */
+const TYPICAL_DISTANCE = 3;
+/** The maximum number of lights with shadows, each of which needs another rendering of the scene. */
+const MAX_SHADOWS = 2;
+/** The maximum number of lights of a world, each of which costs time for every pixel. */
+const MAX_LIGHTS = 8;
 
-/** The lights of one world, at their places in the fixed frame. */
+/** The lights of a world, at their poses in the fixed frame. */
 export class WorldLights {
   readonly root = new Group();
-  private placed: { light: Light; said: LightScene }[] = [];
-  private made = "";
+  private placed: { light: Light; spec: LightScene }[] = [];
+  private builtKey = "";
   private chosen: Lighting = "Camera";
   private shadowed = false;
 
@@ -37,22 +37,22 @@ export class WorldLights {
     this.root.matrixAutoUpdate = false;
   }
 
-  /** Takes what the display's properties and its world say. */
+  /** Applies the properties of the display and its world. */
   style(rows: PropertyRows, scene: WorldScene): void {
-    const said = rows.text("Automatic", "Light");
-    this.chosen = said === "Studio" || said === "World" || said === "Camera" ? said : this.affordsStudio() ? "Studio" : "Soft";
+    const choice = rows.text("Automatic", "Light");
+    this.chosen = choice === "Studio" || choice === "World" || choice === "Camera" ? choice : this.affordsStudio() ? "Studio" : "Soft";
     this.shadowed = this.isLit && rows.bool(true, "Shadows") && (this.chosen === "Studio" || scene.shadows);
     const key = [this.chosen, this.shadowed, scene.revision].join();
-    if (key === this.made) return;
-    this.made = key;
+    if (key === this.builtKey) return;
+    this.builtKey = key;
     this.clear();
     if (this.chosen === "Studio") this.buildStudio();
     else if (this.chosen === "World") this.buildWorld(scene);
   }
 
-  /** Whether the light at the camera is not needed. */
+  /** Whether lights in the scene replace the camera's light. */
   get isLit(): boolean {
-    return standsInScene(this.chosen);
+    return usesSceneLights(this.chosen);
   }
 
   get lighting(): Lighting {
@@ -63,38 +63,38 @@ export class WorldLights {
     return this.shadowed;
   }
 
-  /** Whether its own lights are lit. */
+  /** Whether the world's own lights are used. */
   get isOfWorld(): boolean {
     return this.chosen === "World";
   }
 
-  /** The colour behind the world. */
+  /** Returns the background colour of the world. */
   background(scene: WorldScene): string {
     const [r = 0, g = 0, b = 0] = scene.background;
     return `#${new Color(r, g, b).getHexString()}`;
   }
 
-  /** Puts the lights where their links are, and the shadows around what is drawn. */
+  /** Moves the lights to the poses of their links, and fits shadows to the drawn objects. */
   place(world: Matrix4, poseOf: (link: string) => Matrix4 | null, drawn: () => Box3): void {
     if (!this.isLit) return;
-    for (const { light, said } of this.placed) {
-      const frame = said.link === null ? world : poseOf(said.link);
+    for (const { light, spec } of this.placed) {
+      const frame = spec.link === null ? world : poseOf(spec.link);
       light.visible = frame !== null;
       if (!frame) continue;
-      light.position.fromArray(said.position).applyMatrix4(frame);
-      const direction = new Vector3().fromArray(said.direction).transformDirection(frame);
+      light.position.fromArray(spec.position).applyMatrix4(frame);
+      const direction = new Vector3().fromArray(spec.direction).transformDirection(frame);
       if (light instanceof SpotLight || light instanceof DirectionalLight) light.target.position.copy(light.position).add(direction);
       if (light instanceof DirectionalLight) this.aim(light, direction, drawn);
     }
   }
 
-  /** Makes surfaces cast and receive shadows, or not. */
+  /** Sets whether objects cast and receive shadows. */
   shade(root: Object3D): void {
-    shade(root, this.shadowed);
+    setShadowed(root, this.shadowed);
   }
 
-  /** What is lit, for tests. */
-  tell(): object {
+  /** Returns the lights in use, for tests. */
+  inspect(): object {
     const shadows = this.placed.filter(({ light }) => light.castShadow).length;
     return { lighting: this.chosen, lights: this.placed.length, shadows };
   }
@@ -113,7 +113,7 @@ export class WorldLights {
 
   private buildStudio(): void {
     this.root.add(studioSky());
-    const said: LightScene = {
+    const spec: LightScene = {
       kind: "directional",
       link: null,
       position: [0, 0, 0],
@@ -124,29 +124,29 @@ export class WorldLights {
       fading: [1, 0, 0],
       cone: [0, 0],
     };
-    this.add(new DirectionalLight(), said);
+    this.add(new DirectionalLight(), spec);
   }
 
   private buildWorld(scene: WorldScene): void {
     const [r = 0, g = 0, b = 0] = scene.ambient;
-    this.root.add(new AmbientLight(new Color(r, g, b), FULL));
-    for (const said of scene.lights.slice(0, MOST_LIGHTS)) this.add(lightOf(said), said);
+    this.root.add(new AmbientLight(new Color(r, g, b), FULL_INTENSITY));
+    for (const spec of scene.lights.slice(0, MAX_LIGHTS)) this.add(lightOf(spec), spec);
   }
 
-  private add(light: DirectionalLight | PointLight | SpotLight, said: LightScene): void {
-    const [r = 0, g = 0, b = 0] = said.color;
+  private add(light: DirectionalLight | PointLight | SpotLight, spec: LightScene): void {
+    const [r = 0, g = 0, b = 0] = spec.color;
     light.color.setRGB(r, g, b);
-    light.intensity = FULL * strength(said);
+    light.intensity = FULL_INTENSITY * strength(spec);
     const shadows = this.placed.filter((each) => each.light.castShadow).length;
-    if (this.shadowed && said.shadows && shadows < MOST_SHADOWS && !(light instanceof PointLight)) {
+    if (this.shadowed && spec.shadows && shadows < MAX_SHADOWS && !(light instanceof PointLight)) {
       castShadows(light);
     }
     this.root.add(light);
     if (!(light instanceof PointLight)) this.root.add(light.target);
-    this.placed.push({ light, said });
+    this.placed.push({ light, spec });
   }
 
-  /** A sun shines from just outside of the drawn objects, so that its shadows are as fine as they can be. */
+  /** Aims a sun from just outside the drawn objects, so that its shadows have the highest resolution. */
   private aim(light: DirectionalLight, direction: Vector3, drawn: () => Box3): void {
     const box = light.castShadow ? drawn() : new Box3();
     if (box.isEmpty()) {
@@ -154,24 +154,24 @@ export class WorldLights {
       light.target.position.set(0, 0, 0);
       return;
     }
-    const radius = Math.min(box.getSize(new Vector3()).length() / 2, LARGEST_RADIUS);
+    const radius = Math.min(box.getSize(new Vector3()).length() / 2, MAX_SHADOW_RADIUS);
     aimSun(light, direction, box.getCenter(new Vector3()), radius);
   }
 }
 
-/** The intensity of a light at the distance at which it is seen most; nearer and farther it is the same up to its range. */
+/** Returns the intensity of a light at a typical distance, which is used for all distances up to its range. */
 function strength({ kind, range, fading }: LightScene): number {
   if (kind === "directional") return 1;
   const [constant = 1, linear = 0, quadratic = 0] = fading;
-  const distance = Math.min(range / 2, SEEN_FROM);
+  const distance = Math.min(range / 2, TYPICAL_DISTANCE);
   return Math.min(1, 1 / Math.max(constant + linear * distance + quadratic * distance ** 2, 1e-3));
 }
 
-function lightOf(said: LightScene): DirectionalLight | PointLight | SpotLight {
-  if (said.kind === "directional") return new DirectionalLight();
-  if (said.kind === "point") return new PointLight(0xffffff, 1, said.range, 0);
-  const [inner = 0, outer = 0] = said.cone;
+function lightOf(spec: LightScene): DirectionalLight | PointLight | SpotLight {
+  if (spec.kind === "directional") return new DirectionalLight();
+  if (spec.kind === "point") return new PointLight(0xffffff, 1, spec.range, 0);
+  const [inner = 0, outer = 0] = spec.cone;
   const angle = Math.min(outer > 0 ? outer / 2 : Math.PI / 4, Math.PI / 2);
   const soft = outer > 0 ? Math.min(Math.max(1 - inner / outer, 0), 1) : 0;
-  return new SpotLight(0xffffff, 1, said.range, angle, soft, 0);
+  return new SpotLight(0xffffff, 1, spec.range, angle, soft, 0);
 }

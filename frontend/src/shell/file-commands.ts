@@ -1,24 +1,24 @@
 import type { ConfigurationRefused, EditName } from "../protocol";
 import type { ConfigurationState } from "../state/configuration";
 import { strings } from "../strings";
-import { Dialog, tell } from "../widgets/dialog";
+import { Dialog, showNotice } from "../widgets/dialog";
 import { saveText } from "../widgets/save-file";
 import { FileDialog } from "./file-dialog";
 
-/** Bytes of a file that fits into a message to the server, quotes and all. */
-const LARGEST = 800_000;
+/** The maximum size of a file in bytes, so that it fits into a message to the server with its quotes escaped. */
+const MAX_BYTES = 800_000;
 const CONTENT_TYPE = "application/yaml";
 
-/** The commands on the configuration file, with the questions that keep work from being lost. */
+/** The commands on the configuration file, with questions before changes are lost. */
 export class FileCommands {
-  /** The pending request, repeated when the user accepts that changes are lost. */
+  /** The pending request, repeated if the user agrees to lose changes. */
   private pending: ((discard: boolean) => void) | null = null;
-  /** Runs when the file is saved. */
+  /** Called once the file is saved. */
   private afterSaving: (() => void) | null = null;
   private dialog: FileDialog | null = null;
 
   constructor(private readonly state: ConfigurationState) {
-    state.refused.on((refusal) => this.refused(refusal));
+    state.refused.on((refusal) => this.onRefused(refusal));
     state.saved.on(() => {
       const next = this.afterSaving;
       this.afterSaving = null;
@@ -26,25 +26,25 @@ export class FileCommands {
     });
     state.texts.on(({ name, text }) => saveText(name, text, CONTENT_TYPE));
     window.addEventListener("beforeunload", (event) => {
-      // The shared configuration lives on in the program; one of this page's own ends with it.
+      // The shared configuration survives in the program; a page's own configuration ends with the page.
       if (state.current.own && state.current.unsaved) event.preventDefault();
     });
   }
 
   begin(): void {
-    this.ask((discard) => this.state.begin(discard));
+    this.ask((discard) => this.state.newFile(discard));
   }
 
   open(path: string): void {
     this.ask((discard) => this.state.open(path, discard));
   }
 
-  /** Lets the user choose a file of the server. */
+  /** Lets the user choose a file on the server. */
   chooseFile(): void {
     this.show(new FileDialog(this.state, "open", (path) => this.open(path)));
   }
 
-  /** Lets the user choose a file of the browser's machine. */
+  /** Lets the user choose a file on the browser's machine. */
   chooseLocal(): void {
     const input = document.createElement("input");
     input.type = "file";
@@ -52,7 +52,7 @@ export class FileCommands {
     input.addEventListener("change", () => {
       const file = input.files?.[0];
       if (!file) return;
-      if (file.size > LARGEST) tell(strings.shell.refused, strings.shell.tooLarge(file.name));
+      if (file.size > MAX_BYTES) showNotice(strings.shell.refused, strings.shell.tooLarge(file.name));
       else void file.text().then((text) => this.ask((discard) => this.state.load(file.name, text, discard)));
     });
     input.click();
@@ -71,7 +71,7 @@ export class FileCommands {
   }
 
   download(): void {
-    this.state.askText();
+    this.state.requestText();
   }
 
   revert(): void {
@@ -104,7 +104,7 @@ export class FileCommands {
     what(false);
   }
 
-  private refused(refusal: ConfigurationRefused): void {
+  private onRefused(refusal: ConfigurationRefused): void {
     const words = strings.shell;
     switch (refusal.question) {
       case "unsaved":
@@ -118,7 +118,7 @@ export class FileCommands {
         break;
       case null:
         this.afterSaving = null;
-        if (this.dialog?.refused(refusal.message) !== true) tell(words.refused, refusal.message);
+        if (this.dialog?.showProblem(refusal.message) !== true) showNotice(words.refused, refusal.message);
         break;
     }
   }
@@ -126,7 +126,7 @@ export class FileCommands {
   private askToDiscard(): void {
     const words = strings.shell;
     const again = this.pending;
-    const goOn = (): undefined => {
+    const proceed = (): undefined => {
       again?.(true);
       return undefined;
     };
@@ -135,12 +135,12 @@ export class FileCommands {
       [words.unsavedQuestion(this.state.fileName ?? words.untitled)],
       [
         { label: words.cancel },
-        { label: words.discard, danger: true, run: goOn },
+        { label: words.discard, danger: true, run: proceed },
         {
           label: words.saveFirst,
           main: true,
           run: () => {
-            this.afterSaving = goOn;
+            this.afterSaving = proceed;
             this.save();
             return undefined;
           },
@@ -169,7 +169,7 @@ export class FileCommands {
   }
 }
 
-/** An edit in words: `adding Grid`. */
+/** Returns an edit in words: `adding Grid`. */
 export function editText(edit: EditName): string {
   return strings.shell.edits[edit.kind](edit.name);
 }

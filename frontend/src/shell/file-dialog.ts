@@ -5,9 +5,9 @@ import type { ConfigurationState } from "../state/configuration";
 import { strings } from "../strings";
 import { Dialog } from "../widgets/dialog";
 
-const ENDING = ".rviz";
+const EXTENSION = ".rviz";
 
-/** Chooses a configuration file of the server: its folders and `.rviz` files, and a line to type a path in. */
+/** Chooses a configuration file on the server from folders and `.rviz` files, or by typing a path. */
 export class FileDialog {
   private readonly dialog: Dialog;
   private readonly list = h("ul", { class: "file-list", role: "listbox", aria: { label: strings.shell.folder } });
@@ -15,20 +15,20 @@ export class FileDialog {
   private readonly problem = h("p", { class: "dialog-problem", role: "alert" });
   private readonly name = h("input", { class: "field wide" });
   private readonly up: HTMLButtonElement;
-  private readonly forget: () => void;
+  private readonly stopListening: () => void;
   private folder: Folder | null = null;
-  private taken = false;
+  private isAccepted = false;
 
   constructor(
     private readonly state: ConfigurationState,
     private readonly kind: "open" | "save",
-    private readonly take: (path: string) => void,
+    private readonly onChosen: (path: string) => void,
     private readonly cancelled: () => void = () => undefined,
   ) {
     const words = strings.shell;
     this.name.setAttribute("aria-label", words.fileName);
     this.name.spellcheck = false;
-    if (kind === "save") this.name.value = state.fileName ?? `${words.untitled}${ENDING}`;
+    if (kind === "save") this.name.value = state.fileName ?? `${words.untitled}${EXTENSION}`;
     this.up = button(words.folderUp, () => this.ask(this.folder?.parent ?? null), "tool framed", icon("up"));
     this.dialog = new Dialog(
       kind === "open" ? words.openTitle : words.saveTitle,
@@ -44,18 +44,18 @@ export class FileDialog {
       ],
       "file-dialog",
     );
-    this.list.addEventListener("keydown", (event) => this.keyed(event));
+    this.list.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.name.addEventListener("input", () => this.update());
-    this.forget = state.folders.on((folder) => this.show(folder));
+    this.stopListening = state.folders.on((folder) => this.show(folder));
     this.dialog.element.addEventListener("close", () => {
-      this.forget();
-      if (!this.taken) this.cancelled();
+      this.stopListening();
+      if (!this.isAccepted) this.cancelled();
     });
   }
 
   open(): void {
     this.dialog.open(this.name);
-    this.name.setSelectionRange(0, Math.max(0, this.name.value.length - ENDING.length));
+    this.name.setSelectionRange(0, Math.max(0, this.name.value.length - EXTENSION.length));
     this.update();
     this.ask(null);
   }
@@ -64,8 +64,8 @@ export class FileDialog {
     this.dialog.close();
   }
 
-  /** Shows why a folder cannot be listed; whether the dialog is open. */
-  refused(message: string): boolean {
+  /** Shows why a folder cannot be listed; returns whether the dialog is open. */
+  showProblem(message: string): boolean {
     if (!this.dialog.element.open) return false;
     this.problem.textContent = message;
     return true;
@@ -73,7 +73,7 @@ export class FileDialog {
 
   private ask(path: string | null): void {
     this.problem.textContent = "";
-    this.state.askFolder(path);
+    this.state.requestFolder(path);
   }
 
   private show(folder: Folder): void {
@@ -112,7 +112,7 @@ export class FileDialog {
     return entry;
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const entries = [...this.list.querySelectorAll<HTMLLIElement>("[role=option]:not(.empty)")];
     const index = entries.indexOf(document.activeElement as HTMLLIElement);
     if (event.key === "ArrowDown") entries[Math.min(index + 1, entries.length - 1)]?.focus();
@@ -130,9 +130,9 @@ export class FileDialog {
   private accept(): boolean {
     const typed = this.name.value.trim();
     if (typed === "") return false;
-    const named = this.kind === "save" && !typed.endsWith(ENDING) ? `${typed}${ENDING}` : typed;
-    this.taken = true;
-    this.take(/^([/~]|[A-Za-z]:[\\/])/.test(named) ? named : join(this.folder?.path ?? "", named));
+    const named = this.kind === "save" && !typed.endsWith(EXTENSION) ? `${typed}${EXTENSION}` : typed;
+    this.isAccepted = true;
+    this.onChosen(/^([/~]|[A-Za-z]:[\\/])/.test(named) ? named : join(this.folder?.path ?? "", named));
     return true;
   }
 }

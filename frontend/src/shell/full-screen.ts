@@ -1,4 +1,4 @@
-/** F11 shows one element alone, as RViz's full screen shows only the scene; F11 or Esc ends it. */
+/** Shows an element in full screen on F11, like RViz's full screen of the scene only; F11 or Esc ends it. */
 export function fullScreenOnF11(element: HTMLElement): void {
   document.addEventListener("keydown", (event) => {
     if (event.key !== "F11" || !document.fullscreenEnabled) return;

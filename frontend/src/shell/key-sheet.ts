@@ -10,7 +10,7 @@ import { keyText, SHORTCUTS } from "../widgets/shortcuts";
 
 type Row = readonly [keys: string, meaning: string];
 
-/** All keys of the page, on a sheet that `?` opens. */
+/** The sheet of all keys of the page, which `?` opens. */
 export class KeySheet {
   private dialog: HTMLDialogElement | null = null;
 

@@ -1,17 +1,20 @@
-import { addressOf, recordingIn } from "../connection/recording-address";
+import { withRecording, recordingIn } from "../connection/recording-address";
 import type { Tokens } from "../connection/tokens";
 import { RefusedError, Upload } from "../connection/upload";
 import { h } from "../dom";
 import { amountOf } from "../panels/timeline/timeline-text";
 import type { Session } from "../state/session";
 import { language, strings } from "../strings";
-import { Dialog, tell } from "../widgets/dialog";
+import { Dialog, showNotice } from "../widgets/dialog";
 import { filesOf, recordingAmong, type Dropped } from "./recording-files";
 
-/** Recordings that the user drops on the page, chooses or has made: they go to the server, and a page with their timeline opens. */
+/**
+ * Opens recordings that the user drops on the page, chooses or has made: uploads them, and opens the page of the
+ * recording.
+ */
 export class RecordingDrop {
   private readonly veil = h("div", { class: "drop-veil" }, h("p", {}, strings.recording.dropHere));
-  private sending = false;
+  private isBusy = false;
 
   constructor(
     session: Session,
@@ -20,7 +23,7 @@ export class RecordingDrop {
     this.veil.hidden = true;
     document.body.append(this.veil);
     document.addEventListener("dragover", (event) => {
-      if (!holdsFiles(event)) return;
+      if (!hasFiles(event)) return;
       event.preventDefault();
       this.veil.hidden = false;
     });
@@ -29,15 +32,15 @@ export class RecordingDrop {
     });
     document.addEventListener("drop", (event) => {
       this.veil.hidden = true;
-      if (!holdsFiles(event) || !event.dataTransfer) return;
+      if (!hasFiles(event) || !event.dataTransfer) return;
       event.preventDefault();
-      void filesOf(event.dataTransfer).then((dropped) => this.take(dropped));
+      void filesOf(event.dataTransfer).then((dropped) => this.accept(dropped));
     });
-    session.recording.wanted.on(({ name, url }) => void this.open(name, 0, (upload) => upload.show(url)));
-    session.connection.on("timeline", ({ live }) => this.check(live));
+    session.recording.viewRequested.on(({ name, url }) => void this.open(name, 0, (upload) => upload.show(url)));
+    session.connection.on("timeline", ({ live }) => this.leaveClosed(live));
   }
 
-  /** Lets the user choose a recording of the browser's machine: its file, or all files of its folder. */
+  /** Lets the user choose a recording on the browser's machine: its file, or all files of its folder. */
   choose(): void {
     const input = document.createElement("input");
     input.type = "file";
@@ -45,15 +48,15 @@ export class RecordingDrop {
     input.accept = ".mcap,.db3,.yaml,.zstd";
     input.addEventListener("change", () => {
       const files = [...(input.files ?? [])].map((file) => ({ name: file.name, file }));
-      this.take(recordingAmong(strings.recording.folder, files));
+      this.accept(recordingAmong(strings.recording.folder, files));
     });
     input.click();
   }
 
-  private take(dropped: Dropped): void {
+  private accept(dropped: Dropped): void {
     const words = strings.recording;
-    if (this.sending) return;
-    if (dropped.files.length === 0) tell(words.noRecording, words.noRecordingHint(dropped.name));
+    if (this.isBusy) return;
+    if (dropped.files.length === 0) showNotice(words.noRecording, words.noRecordingHint(dropped.name));
     else void this.send(dropped);
   }
 
@@ -62,10 +65,13 @@ export class RecordingDrop {
     return this.open(name, whole, (upload) => upload.send(name, files));
   }
 
-  /** Opens the page of a recording when the server shows it; until then a dialog shows the progress. `whole` are bytes. */
+  /**
+   * Opens the page of a recording once the server shows it, with a dialog for the progress until then. `whole` is the
+   * size in bytes.
+   */
   private async open(name: string, whole: number, bring: (upload: Upload) => Promise<string | null>): Promise<void> {
     const words = strings.recording;
-    if (this.sending) return;
+    if (this.isBusy) return;
     const bar = h("progress", { class: "wide", aria: { label: words.sending(name) } });
     const text = h("p", { role: "status" });
     const show = (sent: number): void => {
@@ -80,31 +86,31 @@ export class RecordingDrop {
     dialog.element.addEventListener("close", () => {
       if (!done) upload.cancel();
     });
-    this.sending = true;
+    this.isBusy = true;
     show(0);
     dialog.open();
     try {
       const recording = await bring(upload);
-      if (recording !== null) location.assign(addressOf(location.href, recording));
+      if (recording !== null) location.assign(withRecording(location.href, recording));
     } catch (error) {
       done = true;
       dialog.close();
-      tell(words.notOpened(name), error instanceof RefusedError && error.message !== "" ? error.message : words.broken);
+      showNotice(words.notOpened(name), error instanceof RefusedError && error.message !== "" ? error.message : words.broken);
     } finally {
       done = true;
-      this.sending = false;
+      this.isBusy = false;
       dialog.close();
     }
   }
 
-  /** A recording that was not viewed for a while is no longer shown: the program's own page is. */
-  private check(live: boolean): void {
+  /** Returns to the live page, because the server closes recordings that no page has viewed for a while. */
+  private leaveClosed(live: boolean): void {
     if (!live || recordingIn(location.href) === null) return;
-    history.replaceState(history.state, "", addressOf(location.href, null));
-    tell(strings.recording.gone, strings.recording.goneHint);
+    history.replaceState(history.state, "", withRecording(location.href, null));
+    showNotice(strings.recording.gone, strings.recording.goneHint);
   }
 }
 
-function holdsFiles(event: DragEvent): boolean {
+function hasFiles(event: DragEvent): boolean {
   return event.dataTransfer?.types.includes("Files") ?? false;
 }

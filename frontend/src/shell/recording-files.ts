@@ -6,18 +6,18 @@ export interface Dropped {
   files: NamedFile[];
 }
 
-const OF_A_RECORDING = /(^metadata\.yaml|\.(mcap|db3)(\.zstd)?)$/;
+const RECORDING_FILE = /(^metadata\.yaml|\.(mcap|db3)(\.zstd)?)$/;
 
-/** The files of a recording among several; with a descriptive name if there is more than one. */
+/** Returns the files of a recording among several, with the name of the file if there is only one. */
 export function recordingAmong(name: string, files: readonly NamedFile[]): Dropped {
-  const found = files.filter((each) => OF_A_RECORDING.test(each.name));
+  const found = files.filter((file) => RECORDING_FILE.test(file.name));
   const messages = found.filter((each) => each.name !== "metadata.yaml");
-  // The metadata of a single file add nothing to the file.
+  // The metadata of a single file add nothing to it.
   if (messages.length === 1 && messages[0]) return { name: messages[0].name, files: messages };
   return { name, files: messages.length > 0 ? found : [] };
 }
 
-/** The files that were dropped, those directly in a folder included. */
+/** Returns the dropped files, including those directly in a folder. */
 export async function filesOf(transfer: DataTransfer): Promise<Dropped> {
   const entries = [...transfer.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry !== null);
   const files: NamedFile[] = [];
@@ -32,7 +32,7 @@ function fileOf(entry: FileSystemFileEntry): Promise<NamedFile> {
   return new Promise((resolve, reject) => entry.file((file) => resolve({ name: file.name, file }), reject));
 }
 
-/** All entries of a folder; browsers give some at a time. */
+/** Returns all entries of a folder, which browsers return in batches. */
 async function entriesIn(folder: FileSystemDirectoryEntry): Promise<FileSystemEntry[]> {
   const reader = folder.createReader();
   const found: FileSystemEntry[] = [];

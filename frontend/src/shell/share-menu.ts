@@ -5,15 +5,15 @@ import { timeText, VideoRecorder } from "../scene/video";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
 import { copyText } from "../widgets/copy-text";
-import { tell } from "../widgets/dialog";
+import { showNotice } from "../widgets/dialog";
 import type { MenuEntry } from "../widgets/menu";
 import { saveBlob, saveFrom } from "../widgets/save-file";
 
 const SCALES = [1, 2, 4] as const;
 
-/** The menu of exports: images and videos of the scene, the robot as a file. */
+/** The menu of exports: images and videos of the scene, and the robot as a file. */
 export class ShareMenu {
-  /** Shown while a video is recorded: its time, and a click ends it. */
+  /** The button shown while a video is recorded: its duration, and a click to stop. */
   readonly element: HTMLElement;
   private readonly video: VideoRecorder | null;
   private readonly stop: HTMLButtonElement;
@@ -23,16 +23,16 @@ export class ShareMenu {
     private readonly stage: Stage | null,
     private readonly tokens: Tokens,
   ) {
-    this.video = stage && VideoRecorder.isPossible ? recorderOf(stage, (video) => this.keepVideo(video)) : null;
+    this.video = stage && VideoRecorder.isPossible ? recorderOf(stage, (video) => this.saveVideo(video)) : null;
     this.stop = button(strings.sharing.recording, () => this.video?.stop(), "tool recording", "");
     this.element = h("span", { class: "recorder", role: "status" }, this.stop);
     this.video?.changed.on(() => this.showTime());
     this.showTime();
     session.connection.on("export_ready", ({ url, name, outside }) => {
       saveFrom(name, new URL(url, document.baseURI).href);
-      if (outside.length > 0) tell(strings.sharing.exportOutside, strings.sharing.exportOutsideHint, outside);
+      if (outside.length > 0) showNotice(strings.sharing.exportOutside, strings.sharing.exportOutsideHint, outside);
     });
-    session.connection.on("export_failed", ({ message }) => tell(strings.sharing.exportFailed, message));
+    session.connection.on("export_failed", ({ message }) => showNotice(strings.sharing.exportFailed, message));
   }
 
   entries(): MenuEntry[] {
@@ -68,7 +68,7 @@ export class ShareMenu {
     if (image) saveBlob(this.fileName("png"), image);
   }
 
-  private keepVideo(video: Blob): void {
+  private saveVideo(video: Blob): void {
     saveBlob(this.fileName(video.type.startsWith("video/mp4") ? "mp4" : "webm"), video);
   }
 
@@ -80,8 +80,8 @@ export class ShareMenu {
   private async copyLink(): Promise<void> {
     const words = strings.sharing;
     const { link } = this.tokens;
-    if (await copyText(link)) tell(words.linkCopied, words.copyLinkHint);
-    else tell(words.linkHere, link);
+    if (await copyText(link)) showNotice(words.linkCopied, words.copyLinkHint);
+    else showNotice(words.linkHere, link);
   }
 
   private showTime(): void {
@@ -93,11 +93,11 @@ export class ShareMenu {
     this.stop.setAttribute("aria-label", label);
   }
 
-  /** Named after the robot and the time. */
-  private fileName(ending: string): string {
+  /** Returns a name from the robot and the current time. */
+  private fileName(extension: string): string {
     const name = (this.session.robot?.name ?? "scene").replace(/[^\p{L}\p{N}._-]+/gu, "_");
     const time = new Date().toISOString().slice(0, 19).replace(/[T:]/g, "-");
-    return `${name}-${time}.${ending}`;
+    return `${name}-${time}.${extension}`;
   }
 }
 

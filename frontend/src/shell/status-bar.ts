@@ -5,7 +5,7 @@ import { strings } from "../strings";
 
 const REFRESH_MS = 500;
 
-/** Connection, fixed frame, robot and drawing rate, at the foot of the page. */
+/** Connection, fixed frame, robot and frame rate, in the foot of the page. */
 export class StatusBar {
   readonly element: HTMLElement;
   private readonly connection = h("span", { class: "connection", role: "status" });
@@ -58,11 +58,11 @@ export class StatusBar {
   private updateRate(): void {
     if (!this.stage) return;
     const rate = this.stage.loop.framesPerSecond(performance.now());
-    const { pace } = this.session;
+    const { drawingPace } = this.session;
     const fps = rate === null ? strings.status.idle : strings.status.fps(rate);
-    const text = rate !== null && pace.isSlow ? strings.status.slow(fps) : fps;
+    const text = rate !== null && drawingPace.isSlow ? strings.status.slow(fps) : fps;
     if (this.rate.textContent !== text) this.rate.textContent = text;
     const drawn = strings.status.frames(this.stage.loop.framesDrawn);
-    this.rate.title = pace.software === null ? drawn : `${drawn}. ${strings.sharing.software(pace.software)}`;
+    this.rate.title = drawingPace.software === null ? drawn : `${drawn}. ${strings.sharing.software(drawingPace.software)}`;
   }
 }

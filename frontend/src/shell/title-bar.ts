@@ -4,7 +4,7 @@ import type { Dock } from "../panels/dock/dock";
 import type { Session } from "../state/session";
 import { THEME_CHOICES, type ThemeState } from "../state/theme";
 import { changeLanguage, strings } from "../strings";
-import { Logo } from "../widgets/logo";
+import { logo } from "../widgets/logo";
 import { openMenu, type MenuEntry } from "../widgets/menu";
 import { keyText, SHORTCUTS } from "../widgets/shortcuts";
 import { editText, type FileCommands } from "./file-commands";
@@ -12,7 +12,7 @@ import { addressFor } from "./own-displays";
 import type { RecordingDrop } from "./recording-drop";
 import type { ShareMenu } from "./share-menu";
 
-/** The head of the page: menus, the configuration file, and the commands for all of the page. */
+/** The head of the page: menus, the configuration file, and commands for the whole page. */
 export class TitleBar {
   readonly element: HTMLElement;
   private readonly title = h("span", { class: "document-title" });
@@ -38,11 +38,11 @@ export class TitleBar {
       menuButton(words.panels, () => this.panelsMenu()),
       menuButton(strings.sharing.share, () => share.entries()),
     ];
-    walkWithArrows(menus);
+    bindArrowKeys(menus);
     this.element = h(
       "header",
       { class: "title-bar" },
-      Logo(),
+      logo(),
       h("span", { class: "brand" }, "Linkwright"),
       h("nav", { class: "menu-bar", aria: { label: words.menu } }, ...menus),
       this.undo,
@@ -162,8 +162,8 @@ function menuButton(label: string, entries: () => MenuEntry[]): HTMLButtonElemen
   return element;
 }
 
-/** Left and right go from menu to menu, down opens one. */
-function walkWithArrows(menus: readonly HTMLButtonElement[]): void {
+/** Moves between menus with left and right, and opens one with down. */
+function bindArrowKeys(menus: readonly HTMLButtonElement[]): void {
   for (const [index, menu] of menus.entries()) {
     menu.addEventListener("keydown", (event) => {
       if (event.key === "ArrowRight") menus[(index + 1) % menus.length]?.focus();
@@ -179,7 +179,7 @@ function shortened(path: string): string {
   return path.length <= 60 ? path : `…${path.slice(-58)}`;
 }
 
-/** The button that shows the theme, with a menu to choose one. */
+/** Returns the button that shows the theme, with a menu to choose one. */
 function themeButton(theme: ThemeState): HTMLButtonElement {
   const words = strings.shell;
   const choose = (): void => {

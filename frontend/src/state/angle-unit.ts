@@ -6,7 +6,7 @@ export type AngleUnit = "rad" | "deg";
 const KEY = "linkwright.angle-unit";
 const DEGREES = 180 / Math.PI;
 
-/** The unit in which angles are shown and typed; remembered by the browser. */
+/** The unit in which angles are shown and typed, stored by the browser. */
 export class AngleUnits {
   readonly changed = new Signal();
   private unit: AngleUnit;
@@ -25,7 +25,7 @@ export class AngleUnits {
     this.changed.emit();
   }
 
-  /** The factor from a joint's position to the number shown: 1 for metres. */
+  /** Returns the factor from a joint's position to the displayed value: 1 for metres. */
   scale(kind: string): number {
     return kind !== "prismatic" && this.unit === "deg" ? DEGREES : 1;
   }

@@ -8,16 +8,16 @@ import type {
 } from "../protocol";
 import { Signal } from "../signal";
 
-/** The configuration file on the server, its possible additions, undo steps and commands. */
+/** The configuration file on the server: displays that can be added, undo and redo, and commands. */
 export class ConfigurationState {
-  /** Path, unsaved changes, undo or redo are others. */
+  /** The path, unsaved changes, undo or redo changed. */
   readonly changed = new Signal();
   readonly saved = new Signal<string>();
   readonly refused = new Signal<ConfigurationRefused>();
   readonly texts = new Signal<ConfigurationText>();
   readonly folders = new Signal<Folder>();
-  readonly offered = new Signal<DisplayChoices>();
-  /** The possible additions in the server's last answer. */
+  readonly choicesArrived = new Signal<DisplayChoices>();
+  /** The displays that can be added, from the server's last answer. */
   choices: DisplayChoices | null = null;
   current: Configuration = {
     type: "configuration",
@@ -41,11 +41,11 @@ export class ConfigurationState {
     connection.on("folder", (message) => this.folders.emit(message));
     connection.on("display_choices", (message) => {
       this.choices = message;
-      this.offered.emit(message);
+      this.choicesArrived.emit(message);
     });
   }
 
-  /** The name of the file; null when there is none yet. */
+  /** The name of the file; null if the configuration has none yet. */
   get fileName(): string | null {
     return this.current.path === null ? null : (this.current.path.split(/[\\/]/).pop() ?? this.current.path);
   }
@@ -74,7 +74,7 @@ export class ConfigurationState {
     this.connection.send({ type: "remove_displays", displays });
   }
 
-  /** Puts displays into a group (null for none), in front of one of it (null for the end). */
+  /** Moves displays into a group (null for none), before one of its displays (null for the end). */
   move(displays: string[], group: string | null, before: string | null): void {
     this.connection.send({ type: "move_displays", displays, group, before });
   }
@@ -83,21 +83,21 @@ export class ConfigurationState {
     this.connection.send({ type: "group_displays", displays, name });
   }
 
-  /** Asks which displays can be added, and for which topics. */
-  askChoices(): void {
+  /** Requests the displays that can be added, and those for each topic. */
+  requestChoices(): void {
     this.connection.send({ type: "ask_display_choices" });
   }
 
-  askFolder(path: string | null): void {
+  requestFolder(path: string | null): void {
     this.connection.send({ type: "ask_folder", path });
   }
 
-  /** Asks for the file as it would be saved now. */
-  askText(): void {
+  /** Requests the text of the file as it would be saved now. */
+  requestText(): void {
     this.connection.send({ type: "ask_configuration_text" });
   }
 
-  begin(discard = false): void {
+  newFile(discard = false): void {
     this.connection.send({ type: "new_configuration", discard });
   }
 

@@ -1,44 +1,44 @@
 import type { Description, JointDetails, LinkDetails, SourceRange, Written } from "../protocol";
 
-/** A link or joint of the robot of one display. */
+/** A link or joint of the robot in a display. */
 export interface ElementName {
   readonly display: string;
   readonly kind: "link" | "joint";
   readonly name: string;
 }
 
-/** The name of the expanded text among the files. */
+/** The key of the expanded text among the files. */
 export const EXPANDED = "";
 
-/** A description as a tree, with places. */
+/** A description as a tree, with the places where it is written. */
 export class DescriptionModel {
   readonly links: ReadonlyMap<string, LinkDetails>;
   readonly joints: ReadonlyMap<string, JointDetails>;
   private readonly below = new Map<string, JointDetails[]>();
   private readonly depths = new Map<string, number>();
-  /** Ranges of one file from its start; those of a macro occur several times. */
+  /** The source ranges in each file; elements from a macro share a range. */
   private readonly ranges = new Map<string, { range: SourceRange; element: ElementName }[]>();
 
   constructor(readonly description: Description) {
     this.links = new Map(description.links.map((link) => [link.name, link]));
     this.joints = new Map(description.joints.map((joint) => [joint.name, joint]));
     for (const joint of [...description.joints].sort((a, b) => (a.name < b.name ? -1 : 1))) {
-      // Of several joints above a link urdfdom keeps one.
+      // If several joints have the same child link, urdfdom keeps one of them.
       if (this.links.get(joint.child)?.parent_joint !== joint.name) continue;
       const siblings = this.below.get(joint.parent);
       if (siblings) siblings.push(joint);
       else this.below.set(joint.parent, [joint]);
     }
-    this.measure();
-    for (const link of description.links) this.place("link", link.name, link.written);
-    for (const joint of description.joints) this.place("joint", joint.name, joint.written);
+    this.computeDepths();
+    for (const link of description.links) this.addRanges("link", link.name, link.written);
+    for (const joint of description.joints) this.addRanges("joint", joint.name, joint.written);
   }
 
   get display(): string {
     return this.description.display;
   }
 
-  /** The child joints of a link, by name, as in urdfdom. */
+  /** Returns the child joints of a link, sorted by name as in urdfdom. */
   jointsBelow(link: string): readonly JointDetails[] {
     return this.below.get(link) ?? [];
   }
@@ -48,7 +48,7 @@ export class DescriptionModel {
     return name === undefined || name === null ? undefined : this.joints.get(name);
   }
 
-  /** Joints between the root and a link. */
+  /** Returns the number of joints between the root and a link. */
   depthOf(link: string): number {
     return this.depths.get(link) ?? 0;
   }
@@ -57,18 +57,21 @@ export class DescriptionModel {
     return Math.max(0, ...this.depths.values());
   }
 
-  written(element: ElementName): Written | undefined {
+  placesOf(element: ElementName): Written | undefined {
     const from: ReadonlyMap<string, { written: Written }> = element.kind === "link" ? this.links : this.joints;
     return from.get(element.name)?.written;
   }
 
-  /** The links and joints written on a line of a file, in the order of the description; several for a macro's line. */
+  /**
+   * Returns the links and joints written on a line of a file, in the order of the description; a line of a macro may
+   * yield several.
+   */
   elementsAt(file: string, line: number): ElementName[] {
     const here = this.ranges.get(file) ?? [];
     return here.filter(({ range }) => range.line <= line && line <= range.end_line).map(({ element }) => element);
   }
 
-  private measure(): void {
+  private computeDepths(): void {
     const pending: [string, number][] = [[this.description.root, 0]];
     for (let next = pending.pop(); next; next = pending.pop()) {
       const [link, depth] = next;
@@ -78,7 +81,7 @@ export class DescriptionModel {
     }
   }
 
-  private place(kind: "link" | "joint", name: string, { expanded, origin }: Written): void {
+  private addRanges(kind: "link" | "joint", name: string, { expanded, origin }: Written): void {
     for (const range of [expanded, origin]) {
       if (!range) continue;
       const entry = { range, element: { display: this.display, kind, name } };

@@ -3,34 +3,34 @@ import type { DescriptionChanged, InertiaFinding, InertiaFindings } from "../pro
 import { Signal } from "../signal";
 import { DescriptionModel } from "./description-model";
 
-/** The changes by an edit on disk. */
-export interface Change {
+/** The links and joints that an edit on disk changed. */
+export interface EditedElements {
   readonly display: string;
   readonly links: readonly string[];
   readonly joints: readonly string[];
 }
 
 /**
- * The descriptions of the robots. The server only announces changes; the rest is requested while a view
- * holds it, and texts when they are read.
+ * The descriptions of the robots. The server only announces changes; descriptions are requested while a view holds
+ * them, and texts when they are read.
  */
 export class DescriptionState {
   /** The description of a display has arrived. */
   readonly arrived = new Signal<DescriptionModel>();
   /** The findings about the masses of a display's robot have arrived. */
   readonly findingsArrived = new Signal<string>();
-  /** Links and joints have changed. */
-  readonly edited = new Signal<Change>();
+  /** An edit changed links or joints. */
+  readonly edited = new Signal<EditedElements>();
   /** A text has arrived. */
   readonly textArrived = new Signal();
-  /** The user wants to see a place: a diagnostic's, a link's; `name`: what readers know the file by. */
-  readonly placeAsked = new Signal<{ file: string; line: number; display?: string; name?: string }>();
-  /** Texts that were read may be others now. */
+  /** The user asked for a place, such as that of a diagnostic or link; `name` is the file's name for users. */
+  readonly placeRequested = new Signal<{ file: string; line: number; display?: string; name?: string }>();
+  /** Texts that were read may have changed. */
   readonly textsOutdated = new Signal();
   private readonly revisions = new Map<string, number>();
   private readonly models = new Map<string, DescriptionModel>();
   private readonly findings = new Map<string, InertiaFindings>();
-  /** Undefined while the request is pending. */
+  /** The texts that have arrived; undefined while a request is pending, null if the file does not exist. */
   private readonly texts = new Map<string, string | null | undefined>();
   private modelHolders = 0;
   private findingHolders = 0;
@@ -43,7 +43,7 @@ export class DescriptionState {
         for (const display of known.keys()) if (!shown.has(display)) known.delete(display);
       }
     });
-    connection.on("description_changed", (message) => this.changed(message));
+    connection.on("description_changed", (message) => this.onChanged(message));
     connection.on("description", (message) => {
       const model = new DescriptionModel(message);
       this.models.set(message.display, model);
@@ -57,33 +57,33 @@ export class DescriptionState {
       this.texts.set(textKey(display, file), text);
       this.textArrived.emit();
     });
-    // With an error, texts are those with the error; otherwise those of the robot.
+    // While a description has an error, its texts are those with the error; otherwise those of the robot shown.
     connection.on("diagnostics", () => this.forgetTexts());
   }
 
-  /** Keeps the descriptions of all displays current until the returned function is called. */
+  /** Keeps the descriptions of all displays up to date until the returned function is called. */
   hold(): () => void {
     this.modelHolders += 1;
     if (this.modelHolders === 1) {
       for (const [display, revision] of this.revisions) {
-        if (this.models.get(display)?.description.revision !== revision) this.ask("ask_description", display);
+        if (this.models.get(display)?.description.revision !== revision) this.request("ask_description", display);
       }
     }
     return once(() => (this.modelHolders -= 1));
   }
 
-  /** Keeps the findings about masses current until the returned function is called. */
+  /** Keeps the findings about masses up to date until the returned function is called. */
   holdFindings(): () => void {
     this.findingHolders += 1;
     if (this.findingHolders === 1) {
       for (const [display, revision] of this.revisions) {
-        if (this.findings.get(display)?.revision !== revision) this.ask("ask_inertia", display);
+        if (this.findings.get(display)?.revision !== revision) this.request("ask_inertia", display);
       }
     }
     return once(() => (this.findingHolders -= 1));
   }
 
-  /** The description of a display, if it has arrived; it may be slightly out of date. */
+  /** Returns the description of a display, if it has arrived; it may be slightly out of date. */
   of(display: string): DescriptionModel | undefined {
     return this.models.get(display);
   }
@@ -92,7 +92,7 @@ export class DescriptionState {
     return this.findings.get(display)?.findings ?? [];
   }
 
-  /** A text, if it has arrived, otherwise it is requested; null if it does not exist. */
+  /** Returns a text if it has arrived, otherwise requests it; null if it does not exist. */
   text(display: string, file: string): string | null | undefined {
     const key = textKey(display, file);
     if (!this.texts.has(key)) {
@@ -102,18 +102,18 @@ export class DescriptionState {
     return this.texts.get(key);
   }
 
-  private changed({ display, revision, links, joints }: DescriptionChanged): void {
+  private onChanged({ display, revision, links, joints }: DescriptionChanged): void {
     const isNew = this.revisions.get(display) !== revision;
     this.revisions.set(display, revision);
     if (isNew) {
       this.forgetTexts();
-      if (this.modelHolders > 0) this.ask("ask_description", display);
-      if (this.findingHolders > 0) this.ask("ask_inertia", display);
+      if (this.modelHolders > 0) this.request("ask_description", display);
+      if (this.findingHolders > 0) this.request("ask_inertia", display);
     }
     if (links.length + joints.length > 0) this.edited.emit({ display, links, joints });
   }
 
-  private ask(type: "ask_description" | "ask_inertia", display: string): void {
+  private request(type: "ask_description" | "ask_inertia", display: string): void {
     this.connection.send({ type, display });
   }
 

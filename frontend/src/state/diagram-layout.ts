@@ -1,9 +1,9 @@
 import type { JointDetails } from "../protocol";
 import type { DescriptionModel, ElementName } from "./description-model";
-import { general } from "./number-text";
-import { tidyTree, type TreeNode } from "./tidy-tree";
+import { formatGeneral } from "./number-text";
+import { layOutTree, type TreeNode } from "./tidy-tree";
 
-/** A box (link) or ellipse (joint) of the diagram; x and y of its middle, px. */
+/** A box (link) or ellipse (joint) of the diagram; x and y of its centre, px. */
 export interface DiagramNode {
   readonly element: ElementName;
   readonly x: number;
@@ -12,7 +12,7 @@ export interface DiagramNode {
   readonly height: number;
   /** The text at the edge above a joint: its origin in the parent's frame. */
   readonly origin: readonly string[];
-  /** The node that the edge comes from. */
+  /** The node at the start of the edge to this one. */
   readonly above: DiagramNode | null;
 }
 
@@ -37,9 +37,9 @@ interface Sized extends TreeNode {
 }
 
 /**
- * The structure as urdf_to_graphviz draws it: links as boxes, joints as ellipses between them, origins at the edges.
+ * Lays out the structure like urdf_to_graphviz: links as boxes, joints as ellipses between them, origins at the edges.
  *
- * @param measure width of a text in px.
+ * @param measure - returns the width of a text, px.
  */
 export function layOut(model: DescriptionModel, origins: boolean, measure: (text: string) => number): Diagram {
   const size = (kind: ElementName["kind"], name: string, origin: readonly string[], children: readonly Sized[]): Sized => {
@@ -50,7 +50,7 @@ export function layOut(model: DescriptionModel, origins: boolean, measure: (text
     const element = { display: model.display, kind, name };
     return { id: `${kind} ${name}`, element, width, height, boxWidth, boxHeight, origin, children };
   };
-  const tree = tidyTree(build(model, origins, size), GAP_PX, LEVEL_GAP_PX);
+  const tree = layOutTree(buildTree(model, origins, size), GAP_PX, LEVEL_GAP_PX);
   const made = new Map<TreeNode, DiagramNode>();
   const nodes = tree.nodes.map(({ node, x, y, parent }) => {
     const { element, boxWidth, boxHeight, origin } = node as Sized;
@@ -63,8 +63,8 @@ export function layOut(model: DescriptionModel, origins: boolean, measure: (text
   return { nodes, width: tree.width, height: tree.height };
 }
 
-/** Builds the tree from the leaves up, without recursion: descriptions may be chains of thousands. */
-function build(
+/** Builds the tree from the leaves up, without recursion, because descriptions may be chains of thousands of links. */
+function buildTree(
   model: DescriptionModel,
   origins: boolean,
   size: (kind: ElementName["kind"], name: string, origin: readonly string[], children: readonly Sized[]) => Sized,
@@ -89,7 +89,9 @@ function build(
   return made.get(model.description.root) ?? size("link", model.description.root, [], []);
 }
 
-/** The text of an origin as urdf_to_graphviz writes it: metres, and radians converted through the quaternion. */
+/**
+ * Returns the text of an origin as urdf_to_graphviz writes it: metres, and radians converted through the quaternion.
+ */
 function originText({ xyz, rpy }: Pick<JointDetails, "xyz" | "rpy">): [string, string] {
-  return [`xyz: ${xyz.map(general).join(" ")}`, `rpy: ${rpy.map(general).join(" ")}`];
+  return [`xyz: ${xyz.map(formatGeneral).join(" ")}`, `rpy: ${rpy.map(formatGeneral).join(" ")}`];
 }

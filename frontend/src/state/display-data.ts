@@ -2,37 +2,37 @@ import type { Connection } from "../connection/connection";
 import type { DisplayData } from "../connection/data";
 import { Signal } from "../signal";
 
-/** The newest content of every display, by key. */
+/** The newest contents of every display, by key. */
 export class DisplayDataStore {
   readonly received = new Signal<DisplayData>();
-  /** `key` is null when all content of the display is forgotten. */
-  readonly forgotten = new Signal<{ display: string; key: string | null }>();
+  /** Contents were removed; `key` is null if all contents of the display were. */
+  readonly removed = new Signal<{ display: string; key: string | null }>();
   private readonly contents = new Map<string, Map<string, DisplayData>>();
 
   constructor(connection: Connection) {
-    connection.data.on((data) => this.take(data));
-    connection.on("display_forgotten", ({ display, key }) => this.forget(display, key));
-    // Objects that are still drawn after a restart arrive again.
+    connection.data.on((data) => this.add(data));
+    connection.on("display_forgotten", ({ display, key }) => this.remove(display, key));
+    // After a restart, the server sends the contents that are still drawn again.
     connection.on("hello", () => {
-      for (const display of [...this.contents.keys()]) this.forget(display, null);
+      for (const display of [...this.contents.keys()]) this.remove(display, null);
     });
   }
 
-  /** The contents of a display. */
+  /** Returns the contents of a display. */
   of(display: string): Iterable<DisplayData> {
     return this.contents.get(display)?.values() ?? [];
   }
 
-  private take(data: DisplayData): void {
+  private add(data: DisplayData): void {
     let contents = this.contents.get(data.display);
     if (!contents) this.contents.set(data.display, (contents = new Map<string, DisplayData>()));
     contents.set(data.key, data);
     this.received.emit(data);
   }
 
-  private forget(display: string, key: string | null): void {
+  private remove(display: string, key: string | null): void {
     if (key === null) this.contents.delete(display);
     else this.contents.get(display)?.delete(key);
-    this.forgotten.emit({ display, key });
+    this.removed.emit({ display, key });
   }
 }

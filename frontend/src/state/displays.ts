@@ -4,24 +4,24 @@ import { PropertyNode, PropertyRows } from "./properties";
 
 const GROUP = "rviz_common/Group";
 
-/** The level of a row: the server's, or "loading" while its data is on its way. */
+/** The level shown for a row: the server's, or "loading" while its data is being loaded. */
 export type ShownLevel = StatusLevel | "loading";
 
-/** The rows of a status other than "ok", errors first. */
-export function troublesOf(status: readonly StatusRow[]): StatusRow[] {
+/** Returns the status rows that are not "ok", errors first. */
+export function problemsOf(status: readonly StatusRow[]): StatusRow[] {
   return [...status.filter((row) => row.level === "error"), ...status.filter((row) => row.level === "warn")];
 }
 
-/** One display as the server describes it. */
+/** A display as the server describes it. */
 export class DisplayState {
   readonly id: string;
   readonly cls: string;
-  /** The class whose drawing is used: its own, or for a display of another package the one that it is like. */
+  /** The class whose drawing is used: the display's own, or for a display of another package the one that it names. */
   readonly drawing: string;
   name = "";
-  /** Its own box. */
+  /** Whether its own box is ticked. */
   checked = false;
-  /** The group it is in. */
+  /** The group that contains it. */
   group: DisplayState | null = null;
   supported = false;
   level: StatusLevel = "ok";
@@ -35,26 +35,26 @@ export class DisplayState {
     this.update(display);
   }
 
-  /** The status rows that are not "ok", the worst first; none while it is off. */
-  get troubles(): StatusRow[] {
-    return this.enabled ? troublesOf(this.status) : [];
+  /** The status rows that are not "ok", errors first; empty while the display is disabled. */
+  get problems(): StatusRow[] {
+    return this.enabled ? problemsOf(this.status) : [];
   }
 
   get enabledId(): string {
     return `${this.id}/Enabled`;
   }
 
-  /** Whether it is drawn: its box and those of the groups around it are on. */
+  /** Whether the display is drawn: its box and those of all groups around it are ticked. */
   get enabled(): boolean {
     return this.checked && (this.group?.enabled ?? true);
   }
 
-  /** Whether it contains displays instead of drawing. */
+  /** Whether it is a group of displays. */
   get isGroup(): boolean {
     return this.cls === GROUP;
   }
 
-  /** Whether it is in a group, however deep. */
+  /** Whether it is in a group, at any depth. */
   isWithin(group: DisplayState): boolean {
     return this.group !== null && (this.group === group || this.group.isWithin(group));
   }
@@ -75,25 +75,25 @@ export class DisplayState {
   }
 }
 
-/** The Displays tree of the server: global options, global status and every display. */
+/** The server's tree of displays: global options, global status and every display. */
 export class DisplaysState {
   /** Displays were added or removed. */
   readonly treeChanged = new Signal();
-  /** The rows below a display are new ones. */
+  /** The rows below a display were replaced. */
   readonly rowsChanged = new Signal<DisplayState>();
   readonly statusChanged = new Signal<DisplayState | null>();
   readonly enabledChanged = new Signal<DisplayState>();
-  /** One value; `display` is null for a global option. */
+  /** A value changed; `display` is null for a global option. */
   readonly valueChanged = new Signal<{ node: PropertyNode; display: DisplayState | null }>();
-  /** The user requested the row of a display in the list. */
-  readonly rowAsked = new Signal<DisplayState>();
+  /** The user asked for the row of a display in the list. */
+  readonly rowRequested = new Signal<DisplayState>();
   readonly displays: DisplayState[] = [];
   globalOptions = new PropertyRows([]);
   globalStatus: readonly StatusRow[] = [];
   globalLevel: StatusLevel = "ok";
   /** Whether the server has sent the displays. */
-  known = false;
-  /** Whether something of a display is still being loaded, such as its meshes; the scene knows. */
+  isKnown = false;
+  /** Returns whether something of a display is still loading, such as its meshes; set by the scene. */
   isLoading: (display: DisplayState) => boolean = () => false;
   private owners = new Map<string, { node: PropertyNode; display: DisplayState | null }>();
 
@@ -113,8 +113,8 @@ export class DisplaysState {
     this.globalOptions = new PropertyRows(tree.global_options.map((property) => new PropertyNode(property)));
     this.globalStatus = tree.global_status;
     this.globalLevel = tree.global_level;
-    this.known = true;
-    this.index();
+    this.isKnown = true;
+    this.indexRows();
     this.treeChanged.emit();
   }
 
@@ -122,7 +122,7 @@ export class DisplaysState {
     const display = this.find(id);
     if (!display) return;
     display.setProperties(properties);
-    this.index();
+    this.indexRows();
     this.rowsChanged.emit(display);
   }
 
@@ -158,19 +158,19 @@ export class DisplaysState {
     }
   }
 
-  /** The level to show for a display: a display that is still loading is not "ok". */
+  /** Returns the level to show for a display: while it is loading, it is not "ok". */
   levelOf(display: DisplayState): ShownLevel {
     return display.level === "ok" && display.enabled && this.isLoading(display) ? "loading" : display.level;
   }
 
-  /** The displays in a group, or the outermost ones, in their order. */
-  within(group: DisplayState | null): DisplayState[] {
+  /** Returns the displays in a group, or the top-level ones for null, in their order. */
+  childrenOf(group: DisplayState | null): DisplayState[] {
     return this.displays.filter((display) => display.group === group);
   }
 
   /** The number of enabled displays with an error; the global status counts as one. */
-  get failing(): number {
-    const all = [troublesOf(this.globalStatus), ...this.displays.map((each) => each.troubles)];
+  get failingCount(): number {
+    const all = [problemsOf(this.globalStatus), ...this.displays.map((display) => display.problems)];
     return all.filter(([worst]) => worst?.level === "error").length;
   }
 
@@ -182,12 +182,12 @@ export class DisplaysState {
     return this.globalOptions.text("", "Fixed Frame");
   }
 
-  /** Whether a sky and a ground are behind the scene, and not the colour of the background. */
+  /** Whether a sky and a ground are behind the scene instead of the background colour. */
   get hasBackdrop(): boolean {
     return this.globalOptions.text("Color", "Backdrop") !== "Color";
   }
 
-  private index(): void {
+  private indexRows(): void {
     this.owners = new Map();
     const add = (rows: PropertyRows, display: DisplayState | null): void => {
       for (const top of rows.nodes) for (const node of top.walk()) this.owners.set(node.id, { node, display });

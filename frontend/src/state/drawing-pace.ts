@@ -1,30 +1,30 @@
 import { Signal } from "../signal";
 
-/** The number of recent frames that count. */
-const FRAMES = 60;
-/** So many late ones of them are slow, and so few are not any more. */
-const SLOW = 45;
-const FAST = 15;
+/** The number of recent frames that are judged. */
+const JUDGED_FRAMES = 60;
+/** Drawing is slow from this number of late frames on, and fast again from this number down. */
+const SLOW_FROM = 45;
+const FAST_UP_TO = 15;
 
-/** Whether the page draws as fast as requested. Rare frames do not count as slow, only frames that were due. */
+/** Whether the page draws as fast as requested. Only frames that were due count; a low frame rate alone is not slow. */
 export class DrawingPace {
   /** Drawing became slow, or fast again. */
   readonly changed = new Signal();
-  /** The software renderer, if the processor draws instead of a graphics card. */
+  /** The name of the software renderer; null if a GPU draws. */
   software: string | null = null;
-  private readonly lates: boolean[] = [];
+  private readonly lateness: boolean[] = [];
   private slow = false;
 
   get isSlow(): boolean {
     return this.slow;
   }
 
-  /** A frame was drawn; `late`: long after it was due, for the ones before it took their time. */
-  frame(late: boolean): void {
-    this.lates.push(late);
-    if (this.lates.length > FRAMES) this.lates.shift();
-    const count = this.lates.filter(Boolean).length;
-    const slow = this.slow ? count > FAST : count >= SLOW;
+  /** Counts a frame; `late` if it was drawn long after it was due, because the frames before took too long. */
+  countFrame(late: boolean): void {
+    this.lateness.push(late);
+    if (this.lateness.length > JUDGED_FRAMES) this.lateness.shift();
+    const count = this.lateness.filter(Boolean).length;
+    const slow = this.slow ? count > FAST_UP_TO : count >= SLOW_FROM;
     if (slow === this.slow) return;
     this.slow = slow;
     this.changed.emit();

@@ -1,12 +1,12 @@
 import type { RobotScene } from "../protocol";
 import { Signal } from "../signal";
 import type { ElementName } from "./description-model";
-import type { Kept } from "./kept";
+import type { PageMemory } from "./page-memory";
 import type { SelectionState } from "./selection";
 
 /**
- * The link or joint that the panels of the description are about. A joint selects the link that it moves in the scene;
- * a link selected there is the element here.
+ * The link or joint that the description panels show. Selecting a joint selects its child link in the scene; selecting
+ * a link in the scene makes it the element here.
  */
 export class ElementFocus {
   readonly changed = new Signal();
@@ -24,9 +24,9 @@ export class ElementFocus {
     });
   }
 
-  /** Has the joint that is selected outlive the page. */
-  keep(kept: Kept): void {
-    kept.part("joint", () => this.joint, (joint) => (this.joint = joint));
+  /** Preserves the selected joint across reloads of the page. */
+  preserveIn(memory: PageMemory): void {
+    memory.preserve("joint", () => this.joint, (joint) => (this.joint = joint));
   }
 
   get current(): ElementName | null {
@@ -46,17 +46,17 @@ export class ElementFocus {
     const link = element && this.robots.get(element.display)?.links.find((each) => each.name === name);
     const before = this.selection.selected;
     this.selection.select(element && link ? { display: element.display, link } : null);
-    // The same link by another of its joints, or by itself.
+    // The link is the same, but the selected element may be another of its joints, or the link itself.
     if (before?.link.name === this.selection.selected?.link.name) this.changed.emit();
   }
 
   setHovered(element: ElementName | null): void {
-    if (same(element, this.hover)) return;
+    if (isSameElement(element, this.hover)) return;
     this.hover = element;
     this.hoverChanged.emit();
   }
 
-  /** The link that shows an element in the scene. */
+  /** Returns the link that represents an element in the scene. */
   linkOf(element: ElementName): string | undefined {
     if (element.kind === "link") return element.name;
     const links = this.robots.get(element.display)?.links ?? [];
@@ -64,6 +64,6 @@ export class ElementFocus {
   }
 }
 
-export function same(a: ElementName | null, b: ElementName | null): boolean {
+export function isSameElement(a: ElementName | null, b: ElementName | null): boolean {
   return a === b || (a !== null && b !== null && a.display === b.display && a.kind === b.kind && a.name === b.name);
 }

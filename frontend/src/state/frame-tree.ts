@@ -1,6 +1,6 @@
 import type { FrameStore } from "./frames";
 
-/** The root of the tree that has most frames, the first of several; null where there are none. */
+/** Returns the root of the tree with the most frames, the first if there are several; null if there are no frames. */
 export function largestRoot({ names, parents }: Pick<FrameStore, "names" | "parents">): string | null {
   const sizes = new Map<number, number>();
   for (let row = 0; row < names.length; row++) {

@@ -2,7 +2,7 @@ import type { Transforms } from "../connection/transforms";
 import type { FrameTable } from "../protocol";
 import { Signal } from "../signal";
 
-/** Position (m) and orientation of a frame in the fixed frame. */
+/** The position (m) and orientation of a frame in the fixed frame. */
 export interface FramePose {
   position: [number, number, number];
   orientation: [number, number, number, number];
@@ -12,9 +12,9 @@ const NOTHING = new Float32Array(0);
 
 /** The newest pose of every frame. Rows are those of the frame table; a row of NaN has no transform. */
 export class FrameStore {
-  /** The names, or their parents, are others now. */
+  /** The names of frames or their parents changed. */
   readonly tableChanged = new Signal();
-  /** At least one pose differs from before. */
+  /** At least one pose changed. */
   readonly posesChanged = new Signal();
   /** Only the ages changed. */
   readonly agesChanged = new Signal();
@@ -23,11 +23,11 @@ export class FrameStore {
   poses: Float32Array = NOTHING;
   ages: Float32Array = NOTHING;
   stamp = 0;
-  /** The fixed frame, which tf need not know. */
+  /** The fixed frame, which may be unknown to tf. */
   fixedFrame = "";
   private revision = -1;
   private rows = new Map<string, number>();
-  private early: Transforms | null = null;
+  private pending: Transforms | null = null;
 
   setTable(table: FrameTable): void {
     const before = this.rows;
@@ -45,17 +45,19 @@ export class FrameStore {
       this.ages[row] = ages[old] ?? 0;
     }
     this.tableChanged.emit();
-    if (this.early?.revision === table.revision) this.apply(this.early);
-    this.early = null;
+    if (this.pending?.revision === table.revision) this.apply(this.pending);
+    this.pending = null;
   }
 
-  /** Takes the newest poses; those of a table that has not arrived yet wait for it, older ones are dropped. */
+  /**
+   * Sets the newest poses. Poses of a table that has not arrived yet are stored until it does; older ones are dropped.
+   */
   setTransforms(transforms: Transforms): void {
     if (transforms.revision === this.revision) this.apply(transforms);
-    else if (transforms.revision > this.revision) this.early = transforms;
+    else if (transforms.revision > this.revision) this.pending = transforms;
   }
 
-  /** Row of a frame, or -1. */
+  /** Returns the row of a frame, or -1. */
   row(name: string): number {
     return this.rows.get(name) ?? -1;
   }
@@ -64,8 +66,8 @@ export class FrameStore {
     return row >= 0 && !Number.isNaN(this.poses[row * 7] ?? NaN);
   }
 
-  /** The distance of two frames: the largest difference of their coordinates, m, and components of quaternions. */
-  apart(one: string, other: string): number {
+  /** Returns the distance of two frames: the largest difference of their coordinates in m or quaternion components. */
+  difference(one: string, other: string): number {
     const [a, b] = [this.row(one), this.row(other)];
     if (!this.has(a) || !this.has(b)) return Infinity;
     let most = 0;
@@ -73,7 +75,7 @@ export class FrameStore {
     return most;
   }
 
-  /** Every frame that has a pose. */
+  /** Returns all frames with a pose. */
   snapshot(): Record<string, FramePose> {
     const result: Record<string, FramePose> = {};
     this.names.forEach((name, row) => {

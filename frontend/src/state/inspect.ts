@@ -3,19 +3,19 @@ import type { TextStorage } from "../storage";
 
 const KEY = "linkwright.inspect";
 
-/** The invisible parts of a robot that are drawn. */
+/** The invisible properties of a robot that are drawn. */
 export interface Inspected {
   /** Centres of mass of the links and of the whole robot. */
   centers: boolean;
-  /** Boxes of the same inertia. */
+  /** Boxes with the same inertia. */
   boxes: boolean;
-  /** Ellipsoids of the same inertia. */
+  /** Ellipsoids with the same inertia. */
   ellipsoids: boolean;
   /** Axes of joints, their limits and positions. */
   joints: boolean;
-  /** Collisions against visuals. */
+  /** Collisions over pale visuals. */
   contrast: boolean;
-  /** Frames of links, smaller and in other colours the deeper they are. */
+  /** Frames of links, in a size and colour by their depth in the tree. */
   frames: boolean;
 }
 
@@ -28,7 +28,9 @@ const NOTHING: Inspected = {
   frames: false,
 };
 
-/** The user's choice of invisible parts to draw; remembered by the browser, because .rviz files have no place for it. */
+/**
+ * The user's choice of invisible properties to draw. The browser stores it, because .rviz files have no place for it.
+ */
 export class InspectState {
   readonly changed = new Signal();
   private shown: Inspected;
@@ -45,12 +47,12 @@ export class InspectState {
     return this.shown;
   }
 
-  /** Whether anything is on. */
-  get any(): boolean {
+  /** Whether any choice is on. */
+  get isActive(): boolean {
     return Object.values(this.shown).some(Boolean);
   }
 
-  /** The scale of marks; 1 suits the robot. */
+  /** The scale of marks, relative to a size that suits the robot. */
   get scale(): number {
     return this.size;
   }
@@ -60,7 +62,7 @@ export class InspectState {
     this.remember();
   }
 
-  /** Frames deeper than this are not drawn; null for all. */
+  /** The depth down to which frames are drawn; null for all. */
   get deepest(): number | null {
     return this.depth;
   }

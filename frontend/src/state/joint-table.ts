@@ -1,6 +1,6 @@
 import type { JointDetails } from "../protocol";
 import type { AngleUnits } from "./angle-unit";
-import { general } from "./number-text";
+import { formatGeneral } from "./number-text";
 
 export const COLUMNS = [
   "name",
@@ -19,14 +19,14 @@ export const COLUMNS = [
 
 export type Column = (typeof COLUMNS)[number];
 
-/** The texts of the cells. */
+/** The texts for the cells. */
 interface Words {
   readonly kinds: Readonly<Record<JointDetails["kind"], string>>;
   readonly table: { readonly damping: (value: string) => string; readonly friction: (value: string) => string };
 }
 
-/** The texts of a joint's row. */
-export function cells(joint: JointDetails, angles: AngleUnits, words: Words): Record<Column, string> {
+/** Returns the texts of a joint's row. */
+export function cellTexts(joint: JointDetails, angles: AngleUnits, words: Words): Record<Column, string> {
   const scale = angles.scale(joint.kind);
   const unit = joint.kind === "prismatic" ? "m" : angles.current;
   const moves = joint.kind !== "fixed";
@@ -57,25 +57,25 @@ export function cells(joint: JointDetails, angles: AngleUnits, words: Words): Re
   };
 }
 
-/** `2 × elbow + 0.1 rad` */
+/** Returns `2 × elbow + 0.1 rad`. */
 export function mimicText(joint: string, multiplier: number, offset: number, unit: string): string {
   const product = multiplier === 1 ? joint : multiplier === -1 ? `−${joint}` : `${rounded(multiplier)} × ${joint}`;
   if (offset === 0) return product;
   return `${product} ${offset < 0 ? "−" : "+"} ${rounded(Math.abs(offset))} ${unit}`;
 }
 
-/** Joints sorted by a column; numbers by their value, joints without one last. */
-export function sorted(joints: readonly JointDetails[], column: Column, descending: boolean): JointDetails[] {
+/** Returns joints sorted by a column: numbers by their value, joints without one last. */
+export function sortJoints(joints: readonly JointDetails[], column: Column, descending: boolean): JointDetails[] {
   const way = descending ? -1 : 1;
   return [...joints].sort((a, b) => {
     const [x, y] = [value(a, column), value(b, column)];
     if (x === null || y === null) return Number(x === null) - Number(y === null);
-    const order = typeof x === "number" && typeof y === "number" ? x - y : collator.compare(String(x), String(y));
+    const order = typeof x === "number" && typeof y === "number" ? x - y : COLLATOR.compare(String(x), String(y));
     return order * way;
   });
 }
 
-const collator = new Intl.Collator("en", { numeric: true });
+const COLLATOR = new Intl.Collator("en", { numeric: true });
 
 function value(joint: JointDetails, column: Column): number | string | null {
   switch (column) {
@@ -99,7 +99,7 @@ function value(joint: JointDetails, column: Column): number | string | null {
   }
 }
 
-/** Four significant digits: enough to read, short enough for a table. */
+/** Rounds to four significant digits, which fit into a table. */
 function rounded(value: number): string {
-  return general(Number(value.toPrecision(4)));
+  return formatGeneral(Number(value.toPrecision(4)));
 }

@@ -1,27 +1,27 @@
 import type { Connection } from "../connection/connection";
 import type { JointControl } from "../protocol";
 import { Signal } from "../signal";
-import type { Kept } from "./kept";
+import type { PageMemory } from "./page-memory";
 
-/** Joints in one message: the server accepts messages of 64 KiB. */
-const MOST_AT_ONCE = 200;
+/** The maximum number of joints in one message, because the server accepts messages of 64 KiB. */
+const MAX_PER_MESSAGE = 200;
 
 export type Positions = Readonly<Record<string, number>>;
 
-/** The Joints panel's rows and the last positions from the server. */
+/** The joints of the Joints panel, and the last positions from the server. */
 export class JointsState {
   readonly controlsChanged = new Signal();
   readonly positionsChanged = new Signal();
-  /** Null while nothing publishes from sliders. */
+  /** The controllable joints; null while no sliders publish positions. */
   controls: readonly JointControl[] | null = null;
   positions: Positions = {};
-  /** Links are dragged without holding Alt. */
-  handsOn = false;
-  private waiting: Record<string, number> | null = null;
-  /** The latest rows; a program that ends removes them. */
+  /** Whether links can be dragged without Alt. */
+  dragsWithoutAlt = false;
+  private pending: Record<string, number> | null = null;
+  /** The latest joints, also after the program has ended. */
   private latest: readonly JointControl[] = [];
-  /** Joint positions of a program that was restarted, until the new one has sliders. */
-  private lost: Positions = {};
+  /** The joint positions from before a restart of the program, until the new program has sliders. */
+  private beforeRestart: Positions = {};
 
   constructor(
     private readonly connection: Connection,
@@ -31,27 +31,30 @@ export class JointsState {
     connection.on("joint_positions", ({ positions }) => this.setPositions(positions));
   }
 
-  /** Has it outlive the page that links are dragged. */
-  keep(kept: Kept): void {
-    kept.part("hands on", () => this.handsOn, (on) => (this.handsOn = on));
+  /** Preserves across reloads of the page whether links can be dragged without Alt. */
+  preserveIn(memory: PageMemory): void {
+    memory.preserve("hands on", () => this.dragsWithoutAlt, (on) => (this.dragsWithoutAlt = on));
   }
 
-  /** Moves joints, rad or m: at once; further moves in an animation frame are sent together. */
+  /**
+   * Moves joints, rad or m. The first move is sent immediately; further moves until the next animation frame are sent
+   * together.
+   */
   move(positions: Positions): void {
-    if (this.waiting) {
-      Object.assign(this.waiting, positions);
+    if (this.pending) {
+      Object.assign(this.pending, positions);
       return;
     }
     this.send(positions);
-    this.waiting = {};
+    this.pending = {};
     this.nextFrame(() => {
-      const late = this.waiting ?? {};
-      this.waiting = null;
+      const late = this.pending ?? {};
+      this.pending = null;
       if (Object.keys(late).length > 0) this.move(late);
     });
   }
 
-  /** The joint that must be moved for `name` to get to `position`, and where to; null where nothing moves it. */
+  /** Returns the joint that must be moved so that `name` gets to `position`, and its position; null if no joint can. */
   leader(name: string, position: number): { control: JointControl; position: number } | null {
     const seen = new Set<string>();
     for (let at = position, next = name; !seen.has(next); ) {
@@ -66,11 +69,11 @@ export class JointsState {
     return null;
   }
 
-  /** The program was restarted: moved joints return to their positions, if it shows the same robot. */
+  /** Moves joints back to their positions after the program was restarted, if it shows the same robot. */
   programRestarted(isSame: boolean): void {
     const moved = this.latest.filter(({ name, mimic, zero }) => mimic === null && this.positions[name] !== zero);
     const before = moved.map(({ name }) => [name, this.positions[name]]).filter(([, position]) => position !== undefined);
-    this.lost = isSame ? { ...this.lost, ...(Object.fromEntries(before) as Positions) } : {};
+    this.beforeRestart = isSame ? { ...this.beforeRestart, ...(Object.fromEntries(before) as Positions) } : {};
   }
 
   private setControls(controls: readonly JointControl[] | null): void {
@@ -79,8 +82,8 @@ export class JointsState {
     if (controls === null || controls.length === 0) return;
     this.latest = controls;
     const known = new Set(controls.map(({ name }) => name));
-    const found = Object.entries(this.lost).filter(([name]) => known.has(name));
-    this.lost = {};
+    const found = Object.entries(this.beforeRestart).filter(([name]) => known.has(name));
+    this.beforeRestart = {};
     this.send(Object.fromEntries(found));
   }
 
@@ -96,8 +99,8 @@ export class JointsState {
       this.connection.send({ type: "set_joint", name: only[0], position: only[1] });
       return;
     }
-    for (let i = 0; i < entries.length; i += MOST_AT_ONCE) {
-      const part = Object.fromEntries(entries.slice(i, i + MOST_AT_ONCE));
+    for (let i = 0; i < entries.length; i += MAX_PER_MESSAGE) {
+      const part = Object.fromEntries(entries.slice(i, i + MAX_PER_MESSAGE));
       this.connection.send({ type: "set_joints", positions: part });
     }
   }

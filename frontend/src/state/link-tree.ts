@@ -1,24 +1,24 @@
 import type { JointDetails, LinkDetails } from "../protocol";
 import type { DescriptionModel } from "./description-model";
-import type { Kept } from "./kept";
+import type { PageMemory } from "./page-memory";
 
-/** A link in the tree, and its parent joint. */
+/** A link in the tree, with its parent joint. */
 export interface TreeRow {
   readonly link: LinkDetails;
   readonly joint: JointDetails | null;
   readonly depth: number;
-  /** Whether it has children. */
-  readonly inner: boolean;
+  /** Whether the link has children. */
+  readonly hasChildren: boolean;
   readonly folded: boolean;
 }
 
-/** Which links are folded. Links are known by name, so that a reload leaves the tree as it was. */
+/** The folded links, by name, so that a reload leaves the tree unchanged. */
 export class LinkTreeState {
   private folded = new Set<string>();
 
-  /** Has the folds outlive the page. */
-  keep(kept: Kept): void {
-    kept.part("folded links", () => [...this.folded], (links) => (this.folded = new Set(links)));
+  /** Preserves the folds across reloads of the page. */
+  preserveIn(memory: PageMemory): void {
+    memory.preserve("folded links", () => [...this.folded], (links) => (this.folded = new Set(links)));
   }
 
   isFolded(link: string): boolean {
@@ -29,47 +29,47 @@ export class LinkTreeState {
     if (!this.folded.delete(link)) this.folded.add(link);
   }
 
-  /** Folds or opens everything. */
-  fold(model: DescriptionModel, all: boolean): void {
+  /** Folds or unfolds everything. */
+  foldAll(model: DescriptionModel, all: boolean): void {
     this.folded = new Set(all ? model.links.keys() : []);
   }
 
-  /** Opens the ancestors of a link. */
-  open(model: DescriptionModel, link: string): void {
+  /** Unfolds the ancestors of a link. */
+  reveal(model: DescriptionModel, link: string): void {
     for (let joint = model.jointAbove(link); joint; joint = model.jointAbove(joint.parent)) this.folded.delete(joint.parent);
   }
 }
 
 /**
- * The rows of a tree from its root down. With something to search for, folds do not count and only links stay whose name,
- * or whose joint's name, has all of its words, with those above them.
+ * Returns the rows of a tree from its root down. During a search, folds are ignored, and only links remain whose name,
+ * or whose joint's name, contains all words of the search, with their ancestors.
  */
-export function flattened(model: DescriptionModel, state: LinkTreeState, search: string): TreeRow[] {
+export function visibleRows(model: DescriptionModel, state: LinkTreeState, search: string): TreeRow[] {
   const words = search.toLowerCase().split(/\s+/).filter((word) => word !== "");
-  const kept = words.length > 0 ? found(model, words) : null;
+  const matching = words.length > 0 ? matchesOf(model, words) : null;
   const rows: TreeRow[] = [];
   const seen = new Set<string>();
   const pending: [string, JointDetails | null, number][] = [[model.description.root, null, 0]];
   for (let next = pending.pop(); next; next = pending.pop()) {
     const [name, joint, depth] = next;
     const link = model.links.get(name);
-    if (!link || seen.has(name) || (kept && !kept.has(name))) continue;
+    if (!link || seen.has(name) || (matching && !matching.has(name))) continue;
     seen.add(name);
     const below = model.jointsBelow(name);
-    const folded = !kept && state.isFolded(name);
-    rows.push({ link, joint, depth, inner: below.length > 0, folded });
+    const folded = !matching && state.isFolded(name);
+    rows.push({ link, joint, depth, hasChildren: below.length > 0, folded });
     if (folded) continue;
     for (const each of [...below].reverse()) pending.push([each.child, each, depth + 1]);
   }
   return rows;
 }
 
-function found(model: DescriptionModel, words: readonly string[]): Set<string> {
-  const kept = new Set<string>();
+function matchesOf(model: DescriptionModel, words: readonly string[]): Set<string> {
+  const matching = new Set<string>();
   for (const link of model.links.keys()) {
     const names = `${link} ${model.jointAbove(link)?.name ?? ""}`.toLowerCase();
     if (!words.every((word) => names.includes(word))) continue;
-    for (let at: string | undefined = link; at !== undefined && !kept.has(at); at = model.jointAbove(at)?.parent) kept.add(at);
+    for (let at: string | undefined = link; at !== undefined && !matching.has(at); at = model.jointAbove(at)?.parent) matching.add(at);
   }
-  return kept;
+  return matching;
 }

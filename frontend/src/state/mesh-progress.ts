@@ -1,53 +1,53 @@
 import { Signal } from "../signal";
 
-/** Loading that finishes sooner is not reported. */
-const TOLD_AFTER_MS = 500;
-/** Reading blocks the page, so files from this size on are reported before it begins. */
+/** Loads that take less time are not shown. */
+const SHOWN_AFTER_MS = 500;
+/** Files of at least this size are shown before they are read, because reading blocks the page. */
 const LARGE_BYTES = 4_000_000;
 
-/** The progress of loading a mesh file. */
+/** The progress of a mesh file. */
 export interface MeshLoad {
-  /** The file's, without folders. */
+  /** The name of the file, without folders. */
   readonly name: string;
   bytes: number;
-  /** The total size; null if the server does not send it. */
+  /** The total size in bytes; null if the server does not send it. */
   total: number | null;
   stage: "fetching" | "reading";
 }
 
-/** Mesh files that take longer than a moment to load. */
+/** The mesh files that take longer than a moment to load. */
 export class MeshProgress {
   readonly changed = new Signal();
   private readonly shown = new Set<MeshLoad>();
 
-  /** The loads to be shown, in the order of their beginnings. */
+  /** The loads to show, in the order in which they started. */
   get loads(): readonly Readonly<MeshLoad>[] {
     return [...this.shown];
   }
 
-  /** Begins the loading of a file; the caller reports its progress. */
+  /** Starts tracking a file, whose loader then reports its progress. */
   begin(name: string): LoadReport {
     const load: MeshLoad = { name, bytes: 0, total: null, stage: "fetching" };
     const show = (): void => {
       this.shown.add(load);
       this.changed.emit();
     };
-    const timer = setTimeout(show, TOLD_AFTER_MS);
-    const tell = (): void => {
+    const timer = setTimeout(show, SHOWN_AFTER_MS);
+    const notify = (): void => {
       if (this.shown.has(load)) this.changed.emit();
     };
     return {
-      came: (bytes, total) => {
+      received: (bytes, total) => {
         Object.assign(load, { bytes, total });
-        tell();
+        notify();
       },
-      reads: async () => {
+      startReading: async () => {
         load.stage = "reading";
         if (load.bytes >= LARGE_BYTES) show();
-        tell();
-        if (this.shown.has(load)) await painted();
+        notify();
+        if (this.shown.has(load)) await afterPaint();
       },
-      ended: () => {
+      end: () => {
         clearTimeout(timer);
         if (this.shown.delete(load)) this.changed.emit();
       },
@@ -55,18 +55,18 @@ export class MeshProgress {
   }
 }
 
-/** The reports of a file's loader. */
+/** The functions with which a loader reports the progress of a file. */
 export interface LoadReport {
-  /** Reports the number of bytes received. */
-  came(bytes: number, total: number | null): void;
-  /** Reports that all bytes are received; resolves when the page shows it, because reading blocks painting. */
-  reads(): Promise<void>;
-  /** Reports that the file is loaded, or has failed. */
-  ended(): void;
+  /** Reports the number of bytes received so far. */
+  received(bytes: number, total: number | null): void;
+  /** Reports that all bytes are received. Resolves once the page shows that, because reading blocks painting. */
+  startReading(): Promise<void>;
+  /** Reports that the file is loaded, or failed to load. */
+  end(): void;
 }
 
-/** Resolves when the page was painted; a hidden page is not painted, and continues after a while. */
-function painted(): Promise<void> {
+/** Resolves once the page was painted, or after a while, because a hidden page is not painted. */
+function afterPaint(): Promise<void> {
   return new Promise((resolve) => {
     const timer = setTimeout(resolve, 200);
     requestAnimationFrame(() =>

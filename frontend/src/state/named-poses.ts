@@ -1,7 +1,7 @@
 import { Signal } from "../signal";
 import type { TextStorage } from "../storage";
 
-/** Positions of joints under a name, rad or m. */
+/** Named joint positions, rad or m. */
 export interface NamedPose {
   readonly name: string;
   readonly positions: Readonly<Record<string, number>>;
@@ -9,13 +9,16 @@ export interface NamedPose {
 
 const KEY = "linkwright.poses.";
 
-/** The named poses of each robot, by its name. The browser stores them; a file moves them to another one. */
+/**
+ * The named poses of each robot, by the robot's name. The browser stores them; a file transfers them to another
+ * browser.
+ */
 export class PoseStore {
   readonly changed = new Signal();
 
   constructor(private readonly storage: TextStorage) {}
 
-  of(robot: string): readonly NamedPose[] {
+  posesOf(robot: string): readonly NamedPose[] {
     try {
       const known: unknown = JSON.parse(this.storage.getItem(KEY + robot) ?? "[]");
       return Array.isArray(known) ? known.filter(isPose) : [];
@@ -24,14 +27,14 @@ export class PoseStore {
     }
   }
 
-  /** Keeps poses, each instead of one of the same name. */
+  /** Stores poses, replacing those with the same name. */
   save(robot: string, ...poses: readonly NamedPose[]): void {
-    const all = new Map([...this.of(robot), ...poses].map((pose) => [pose.name, pose]));
+    const all = new Map([...this.posesOf(robot), ...poses].map((pose) => [pose.name, pose]));
     this.write(robot, [...all.values()]);
   }
 
   remove(robot: string, name: string): void {
-    this.write(robot, this.of(robot).filter((pose) => pose.name !== name));
+    this.write(robot, this.posesOf(robot).filter((pose) => pose.name !== name));
   }
 
   private write(robot: string, poses: readonly NamedPose[]): void {
@@ -40,8 +43,8 @@ export class PoseStore {
   }
 }
 
-/** Poses as the group states of an SRDF file, which MoveIt reads too. */
-export function srdfOf(robot: string, poses: readonly NamedPose[]): string {
+/** Returns poses as group states of an SRDF file, which MoveIt reads, too. */
+export function toSrdf(robot: string, poses: readonly NamedPose[]): string {
   const states = poses.map(({ name, positions }) => {
     const joints = Object.entries(positions).map(
       ([joint, value]) => `    <joint name="${escaped(joint)}" value="${String(value)}"/>`,
@@ -51,8 +54,11 @@ export function srdfOf(robot: string, poses: readonly NamedPose[]): string {
   return ['<?xml version="1.0"?>', `<robot name="${escaped(robot)}">`, ...states, "</robot>", ""].join("\n");
 }
 
-/** The group states of an SRDF file; one name for several groups makes several poses, joints of several numbers are left out. */
-export function posesOf(srdf: string): NamedPose[] {
+/**
+ * Returns the group states of an SRDF file. States of several groups with the same name become several poses; joints
+ * with several values are omitted.
+ */
+export function fromSrdf(srdf: string): NamedPose[] {
   const text = srdf.replace(/<!--[\s\S]*?-->/g, "");
   const poses = new Map<string, NamedPose>();
   for (const [, tag = "", inside = ""] of text.matchAll(/<group_state\b([^>]*)>([\s\S]*?)<\/group_state\s*>/g)) {
@@ -68,8 +74,8 @@ export function posesOf(srdf: string): NamedPose[] {
   return [...poses.values()];
 }
 
-/** Whether the joints are at a pose's positions, as far as it sets them. */
-export function standsAs(pose: NamedPose, positions: Readonly<Record<string, number>>): boolean {
+/** Whether the joints are at the positions of a pose, as far as it sets them. */
+export function matchesPose(pose: NamedPose, positions: Readonly<Record<string, number>>): boolean {
   return Object.entries(pose.positions).every(([name, value]) => {
     const position = positions[name];
     return position === undefined || Math.abs(position - value) < 1e-6;

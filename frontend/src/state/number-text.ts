@@ -1,5 +1,5 @@
-/** Six significant digits, as C++ streams and printf's %g print numbers. */
-export function general(value: number): string {
+/** Returns a number with six significant digits, like C++ streams and printf's %g. */
+export function formatGeneral(value: number): string {
   if (!Number.isFinite(value)) return String(value);
   if (value === 0) return Object.is(value, -0) ? "-0" : "0";
   const exponent = Number(value.toExponential(5).split("e")[1]);

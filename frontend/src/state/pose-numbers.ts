@@ -1,20 +1,20 @@
-/** x, y, z and qx, qy, qz, qw: metres and a unit quaternion. */
+/** x, y, z in m, and the unit quaternion qx, qy, qz, qw. */
 export type PoseNumbers = readonly [number, number, number, number, number, number, number];
 
 type Turn = readonly [number, number, number, number];
 type Vector = readonly [number, number, number];
 
-/** A pose given in the frame `a`, in the frame that `a` is given in. */
-export function composed(a: PoseNumbers, b: PoseNumbers): PoseNumbers {
-  const [x, y, z] = turned(turnOf(a), placeOf(b));
-  return [a[0] + x, a[1] + y, a[2] + z, ...product(turnOf(a), turnOf(b))];
+/** Returns a pose `b` given in the frame `a`, in the frame in which `a` is given. */
+export function compose(a: PoseNumbers, b: PoseNumbers): PoseNumbers {
+  const [x, y, z] = rotate(turnOf(a), placeOf(b));
+  return [a[0] + x, a[1] + y, a[2] + z, ...multiply(turnOf(a), turnOf(b))];
 }
 
-/** The pose of `b` in `a`, both given in one frame. */
-export function relative(a: PoseNumbers, b: PoseNumbers): PoseNumbers {
+/** Returns the pose of `b` in `a`, where both are given in the same frame. */
+export function relativeTo(a: PoseNumbers, b: PoseNumbers): PoseNumbers {
   const [x, y, z, w] = turnOf(a);
   const back: Turn = [-x, -y, -z, w];
-  return [...turned(back, [b[0] - a[0], b[1] - a[1], b[2] - a[2]]), ...product(back, turnOf(b))];
+  return [...rotate(back, [b[0] - a[0], b[1] - a[1], b[2] - a[2]]), ...multiply(back, turnOf(b))];
 }
 
 function placeOf([x, y, z]: PoseNumbers): Vector {
@@ -25,7 +25,7 @@ function turnOf(pose: PoseNumbers): Turn {
   return [pose[3], pose[4], pose[5], pose[6]];
 }
 
-function product([ax, ay, az, aw]: Turn, [bx, by, bz, bw]: Turn): Turn {
+function multiply([ax, ay, az, aw]: Turn, [bx, by, bz, bw]: Turn): Turn {
   return [
     aw * bx + ax * bw + ay * bz - az * by,
     aw * by - ax * bz + ay * bw + az * bx,
@@ -34,7 +34,7 @@ function product([ax, ay, az, aw]: Turn, [bx, by, bz, bw]: Turn): Turn {
   ];
 }
 
-function turned([x, y, z, w]: Turn, [a, b, c]: Vector): Vector {
+function rotate([x, y, z, w]: Turn, [a, b, c]: Vector): Vector {
   const [p, q, r] = [y * c - z * b, z * a - x * c, x * b - y * a];
   return [a + 2 * (w * p + y * r - z * q), b + 2 * (w * q + z * p - x * r), c + 2 * (w * r + x * q - y * p)];
 }

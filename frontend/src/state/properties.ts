@@ -1,6 +1,6 @@
 import type { Property, PropertyKind, PropertyValue, RowDetails, TopicOffer } from "../protocol";
 
-/** One row of a property tree; the value changes in place, the rest does not. */
+/** A row of a property tree; only its value and options change. */
 export class PropertyNode {
   readonly id: string;
   readonly name: string;
@@ -11,9 +11,9 @@ export class PropertyNode {
   readonly readOnly: boolean;
   readonly expanded: boolean;
   readonly children: readonly PropertyNode[];
-  /** The object that the row represents, if the page shows more of it in rows of its own. */
+  /** The kind of object that the row represents, if the page adds rows with details of it. */
   readonly details: RowDetails | null;
-  /** Which topics to offer, if not those of the display. */
+  /** The topics to offer, if not those of the display. */
   readonly topics: TopicOffer | null;
   value: PropertyValue;
   options: readonly string[];
@@ -34,14 +34,14 @@ export class PropertyNode {
     this.children = property.children.map((child) => new PropertyNode(child));
   }
 
-  /** This row and everything below it. */
+  /** Yields this row and all rows below it. */
   *walk(): Generator<PropertyNode> {
     yield this;
     for (const child of this.children) yield* child.walk();
   }
 }
 
-/** Rows addressed by their names, as RViz's documentation writes them: `number(1, "Line Style", "Line Width")`. */
+/** Rows found by their names, as in RViz's documentation: `number(1, "Line Style", "Line Width")`. */
 export class PropertyRows {
   private byName: Map<string, PropertyNode>;
 
@@ -56,7 +56,7 @@ export class PropertyRows {
     return node;
   }
 
-  /** Value of a number row; `fallback` where there is none. */
+  /** Returns the value of a number row, or `fallback` if there is none. */
   number(fallback: number, ...path: readonly string[]): number {
     const value = this.find(...path)?.value;
     return typeof value === "number" ? value : fallback;
@@ -72,7 +72,7 @@ export class PropertyRows {
     return typeof value === "string" ? value : fallback;
   }
 
-  /** X, Y and Z below the row at `path`. */
+  /** Returns X, Y and Z below the row at `path`. */
   vector(...path: readonly string[]): [number, number, number] {
     return [this.number(0, ...path, "X"), this.number(0, ...path, "Y"), this.number(0, ...path, "Z")];
   }

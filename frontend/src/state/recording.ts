@@ -2,28 +2,28 @@ import type { Connection } from "../connection/connection";
 import type { RecordedFile, RecordingState } from "../protocol";
 import { Signal } from "../signal";
 
-/** The recording that the server makes for pages: one at a time, which all of them see. */
+/** The recording that the server makes for pages: one at a time, which all pages see. */
 export class RecordingControl {
   readonly changed = new Signal();
-  /** This page's recording or saved excerpt is a file now. */
+  /** The recording or excerpt that this page requested is complete. */
   readonly made = new Signal<RecordedFile>();
-  /** A request of this page failed, or ended early; the reason. */
+  /** A request of this page failed, or its recording ended early; the value is the reason. */
   readonly refused = new Signal<string>();
-  /** The user requested to view a finished one. */
-  readonly wanted = new Signal<RecordedFile>();
+  /** The user asked to view a finished recording. */
+  readonly viewRequested = new Signal<RecordedFile>();
   private latest: RecordingState | null = null;
-  private asked = false;
+  private hasRequested = false;
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
       this.latest = null;
-      this.asked = false;
+      this.hasRequested = false;
       this.changed.emit();
     });
-    connection.on("recording_state", (state) => this.take(state));
+    connection.on("recording_state", (state) => this.setState(state));
   }
 
-  /** Whether topics can be recorded; not beside a recording that is shown. */
+  /** Whether topics can be recorded, which is not the case while a recording is shown. */
   get possible(): boolean {
     return this.latest?.possible ?? false;
   }
@@ -32,7 +32,7 @@ export class RecordingControl {
     return (this.latest?.path ?? "") !== "";
   }
 
-  /** The folder that is written, on the machine of the server. */
+  /** The folder being written, on the server's machine. */
   get path(): string {
     return this.latest?.path ?? "";
   }
@@ -42,12 +42,12 @@ export class RecordingControl {
     return this.latest?.length ?? 0;
   }
 
-  /** Bytes that are written. */
+  /** The size written so far, bytes. */
   get size(): number {
     return this.latest?.size ?? 0;
   }
 
-  /** The part of the last minutes that is saved, 0 to 1; null while none is. */
+  /** The saved share of the history, 0 to 1; null while nothing is being saved. */
   get saved(): number | null {
     return this.latest?.saved ?? null;
   }
@@ -56,39 +56,39 @@ export class RecordingControl {
     return this.latest?.problem ?? "";
   }
 
-  /** The recordings made since the program runs, the last first. */
+  /** The recordings made since the program started, the newest first. */
   get files(): readonly RecordedFile[] {
     return this.latest?.files ?? [];
   }
 
-  /** Records some topics; none for all current and future ones. */
+  /** Records the given topics; an empty list means all current and future topics. */
   record(topics: readonly string[]): void {
-    this.asked = true;
+    this.hasRequested = true;
     this.connection.send({ type: "record_topics", topics: [...topics] });
   }
 
   stop(): void {
-    this.asked = true;
+    this.hasRequested = true;
     this.connection.send({ type: "stop_recording" });
   }
 
-  /** Saves the messages of the last minutes between two times, s since the epoch; null for their ends. */
+  /** Saves the history between two times, s since the epoch; null for its start or end. */
   save(start: number | null, end: number | null): void {
-    this.asked = true;
+    this.hasRequested = true;
     this.connection.send({ type: "save_minutes", start, end });
   }
 
-  private take(state: RecordingState): void {
+  private setState(state: RecordingState): void {
     const before = this.latest;
     this.latest = state;
     this.changed.emit();
-    if (!this.asked || before === null) return;
+    if (!this.hasRequested || before === null) return;
     const [newest] = state.files;
     if (state.problem !== "" && state.problem !== before.problem) {
-      this.asked = this.isRecording;
+      this.hasRequested = this.isRecording;
       this.refused.emit(state.problem);
     } else if (newest && newest.url !== before.files[0]?.url) {
-      this.asked = this.isRecording;
+      this.hasRequested = this.isRecording;
       this.made.emit(newest);
     }
   }

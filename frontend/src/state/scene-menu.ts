@@ -1,11 +1,11 @@
-/** A line of a menu that something in the scene opens; it runs, or opens others. */
+/** An entry of a menu in the scene; it runs a command or opens a submenu. */
 export interface MenuChoice {
   label: string;
   run?: () => void;
   choices?: readonly MenuChoice[];
 }
 
-/** A menu requested at a place of the canvas, pixels from its upper left corner. */
+/** A menu to open at a position on the canvas, pixels from its upper left corner. */
 export interface SceneMenu {
   x: number;
   y: number;

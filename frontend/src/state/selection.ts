@@ -1,6 +1,6 @@
 import type { LinkScene, RobotScene } from "../protocol";
 import { Signal } from "../signal";
-import type { Kept } from "./kept";
+import type { PageMemory } from "./page-memory";
 
 /** An object of a display: a link, a marker, a point; `key` identifies it in the display's drawing. */
 export interface SelectedItem {
@@ -8,16 +8,19 @@ export interface SelectedItem {
   readonly key: string;
 }
 
-/** A link of one RobotModel display. */
+/** A link of a RobotModel display. */
 export interface SelectedLink {
   display: string;
   link: LinkScene;
 }
 
-/** The effect of a selection on the one before. */
+/** How a new selection is combined with the current one. */
 export type SelectionMode = "replace" | "add" | "remove";
 
-/** The selection in the scene and in the tree; links outlive a reload of the robot that still has them. */
+/**
+ * The selection in the scene and the panels; selected links stay selected when the robot is reloaded and still has
+ * them.
+ */
 export class SelectionState {
   readonly changed = new Signal<SelectedLink | null>();
   private current: readonly SelectedItem[] = [];
@@ -25,16 +28,16 @@ export class SelectionState {
 
   constructor(private readonly robots: ReadonlyMap<string, RobotScene>) {}
 
-  /** Has the selection outlive the page. */
-  keep(kept: Kept): void {
-    kept.part("selection", () => this.current, (items) => (this.current = items));
+  /** Preserves the selection across reloads of the page. */
+  preserveIn(memory: PageMemory): void {
+    memory.preserve("selection", () => this.current, (items) => (this.current = items));
   }
 
   get items(): readonly SelectedItem[] {
     return this.current;
   }
 
-  /** The first link among them. */
+  /** The first selected link. */
   get selected(): SelectedLink | null {
     return this.link;
   }
@@ -50,23 +53,23 @@ export class SelectionState {
       else next.set(identity(item), item);
     }
     const same = next.size === this.current.length && this.current.every((item) => next.has(identity(item)));
-    if (!same) this.take([...next.values()]);
+    if (!same) this.setItems([...next.values()]);
   }
 
-  /** Removes objects that their display no longer shows. */
-  drop(isThere: (item: SelectedItem) => boolean): void {
-    const left = this.current.filter(isThere);
-    if (left.length < this.current.length) this.take(left);
+  /** Deselects objects that their display no longer shows. */
+  retain(exists: (item: SelectedItem) => boolean): void {
+    const left = this.current.filter(exists);
+    if (left.length < this.current.length) this.setItems(left);
   }
 
   robotChanged(robot: RobotScene): void {
     const mine = this.current.filter((item) => item.display === robot.display);
     if (mine.length === 0) return;
     const links = new Set(robot.links.map((link) => link.name));
-    this.take(this.current.filter((item) => item.display !== robot.display || links.has(item.key)));
+    this.setItems(this.current.filter((item) => item.display !== robot.display || links.has(item.key)));
   }
 
-  private take(items: readonly SelectedItem[]): void {
+  private setItems(items: readonly SelectedItem[]): void {
     this.current = items;
     this.link = null;
     for (const { display, key } of items) {

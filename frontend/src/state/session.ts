@@ -14,7 +14,7 @@ import { ElementFocus } from "./element-focus";
 import { FrameStore } from "./frames";
 import { InspectState } from "./inspect";
 import { JointsState } from "./joints";
-import { Kept } from "./kept";
+import { PageMemory } from "./page-memory";
 import { MeshProgress } from "./mesh-progress";
 import { Modelling } from "./modelling/modelling";
 import { MonitorState } from "./monitor/monitor";
@@ -23,7 +23,7 @@ import { RecordingControl } from "./recording";
 import type { SceneMenu } from "./scene-menu";
 import { SelectionState } from "./selection";
 import { SimulationState } from "./simulation";
-import { SlowLine } from "./slow-line";
+import { SlowConnection } from "./slow-connection";
 import { Slowness } from "./slowness";
 import { TimeControlState } from "./time";
 import { TimelineState } from "./timeline";
@@ -32,9 +32,9 @@ import { ViewState } from "./view";
 import { VoiceState } from "./voice/voice";
 import { WordsState } from "./voice/words";
 
-/** Everything the page knows, kept current from the server's messages. Panels and drawings listen to its parts. */
+/** The state of the page, which messages from the server keep up to date. Panels and drawings listen to its parts. */
 export class Session {
-  /** The newest description of each RobotModel display, by display id. */
+  /** The newest robot of each RobotModel display, by display ID. */
   readonly robots = new Map<string, RobotScene>();
   readonly frames = new FrameStore();
   readonly displays = new DisplaysState();
@@ -49,25 +49,25 @@ export class Session {
   readonly recording: RecordingControl;
   readonly comparison: ComparisonState;
   readonly data: DisplayDataStore;
-  readonly slowLine: SlowLine;
+  readonly slowConnection: SlowConnection;
   readonly slowness: Slowness;
   readonly meshProgress = new MeshProgress();
-  readonly pace = new DrawingPace();
+  readonly drawingPace = new DrawingPace();
   readonly simulation: SimulationState;
   readonly modelling: Modelling;
   readonly editing: EditingState;
   readonly robotChanged = new Signal<RobotScene>();
   readonly diagnosticsChanged = new Signal();
-  /** Answers `ask_provenance`. */
+  /** Emitted with the answer to `ask_provenance`. */
   readonly provenanceAnswered = new Signal<LinkProvenance>();
   readonly greeted = new Signal<Hello>();
-  /** A menu in the scene was requested. */
+  /** Emitted when a menu in the scene is to be opened. */
   readonly sceneMenu = new Signal<SceneMenu>();
   readonly focus = new ElementFocus(this.selection, this.robots);
   readonly inspect = new InspectState(browserStorage());
   readonly poses = new PoseStore(browserStorage());
   readonly angles = new AngleUnits(browserStorage());
-  readonly kept = new Kept(browserStorage("sessionStorage"));
+  readonly memory = new PageMemory(browserStorage("sessionStorage"));
   readonly monitor: MonitorState;
   readonly voice: VoiceState;
   readonly words: WordsState;
@@ -83,8 +83,8 @@ export class Session {
     this.recording = new RecordingControl(connection);
     this.comparison = new ComparisonState(connection);
     this.data = new DisplayDataStore(connection);
-    this.slowLine = new SlowLine(this.data);
-    this.slowness = new Slowness(this.slowLine, this.pace, connection);
+    this.slowConnection = new SlowConnection(this.data);
+    this.slowness = new Slowness(this.slowConnection, this.drawingPace, connection);
     this.simulation = new SimulationState(connection);
     this.modelling = new Modelling(connection, browserStorage());
     this.editing = new EditingState(connection, browserStorage());
@@ -99,23 +99,23 @@ export class Session {
     };
     this.displays.treeChanged.on(followFixedFrame);
     this.displays.valueChanged.on(followFixedFrame);
-    this.keep();
+    this.registerState();
   }
 
-  /** State of this page alone outlives it. */
-  private keep(): void {
-    const { kept } = this;
-    kept.part("program", () => this.program, (program) => (this.program = program));
-    for (const each of [this.view, this.selection, this.focus, this.tools, this.joints]) each.keep(kept);
+  /** Registers the state that only this page has, to preserve it across a reload. */
+  private registerState(): void {
+    const { memory } = this;
+    memory.preserve("program", () => this.program, (program) => (this.program = program));
+    for (const each of [this.view, this.selection, this.focus, this.tools, this.joints]) each.preserveIn(memory);
   }
 
-  /** Applies a property edit of the user: shown at once, and sent to the server. */
+  /** Applies a user's edit of a property: shows it immediately, and sends it to the server. */
   setProperty(id: string, value: PropertyValue): void {
     this.displays.setValue(id, value, null);
     this.connection.send({ type: "set_property", id, value });
   }
 
-  /** The first robot that has links, if any. */
+  /** The first robot that has links. */
   get robot(): RobotScene | null {
     for (const display of this.displays.displays) {
       const robot = this.robots.get(display.id);
@@ -124,8 +124,8 @@ export class Session {
     return null;
   }
 
-  /** Keeps pose and camera where the program was started again, unless it shows something else now. */
-  private greet(hello: Hello): void {
+  /** Keeps joint positions and camera when the program was restarted, unless it shows something else now. */
+  private onHello(hello: Hello): void {
     const before = this.program;
     this.program = hello;
     if (before !== null && before.run !== hello.run) {
@@ -137,11 +137,11 @@ export class Session {
   }
 
   private listen(connection: Connection): void {
-    connection.on("hello", (message) => this.greet(message));
+    connection.on("hello", (message) => this.onHello(message));
     connection.on("tree", (message) => {
       this.displays.setTree(message);
       for (const id of this.robots.keys()) if (!this.displays.find(id)) this.robots.delete(id);
-      this.selection.drop(({ display }) => this.displays.find(display) !== undefined);
+      this.selection.retain(({ display }) => this.displays.find(display) !== undefined);
     });
     connection.on("display_properties", ({ display, properties }) => this.displays.setRows(display, properties));
     connection.on("property_changed", ({ id, value, options }) => this.displays.setValue(id, value, options));

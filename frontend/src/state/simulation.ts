@@ -5,13 +5,13 @@ import { Signal } from "../signal";
 /** The simulation in the graph, if there is one, as the server reports it. */
 export class SimulationState {
   readonly changed = new Signal();
-  /** The simulation refused a request; the reason. */
+  /** The simulation refused a request; the value is the reason. */
   readonly refused = new Signal<string>();
-  /** A model that this page requested is in the world; its name. */
+  /** A model that this page requested was added to the world; the value is its name. */
   readonly added = new Signal<string>();
-  /** The user requested a model at a place of the world, m. */
-  readonly spawnAsked = new Signal<readonly number[]>();
-  /** Where in the world there is room for a model, m; a world that is drawn knows better. */
+  /** The user asked to add a model at a position in the world, m. */
+  readonly spawnRequested = new Signal<readonly number[]>();
+  /** Returns a free position for a model in the world, m; the drawing of a world replaces this function. */
   freePlace: () => readonly number[] = () => [0, 0, 0];
   private status: SimulationStatus | null = null;
 
@@ -32,12 +32,12 @@ export class SimulationState {
     return this.status?.paused ?? false;
   }
 
-  /** Simulated time, s; null before the server reports it. */
+  /** Simulated time, s; null until the server has reported it. */
   get time(): number | null {
     return this.status?.time ?? null;
   }
 
-  /** Simulated seconds in a real one. */
+  /** The real-time factor: simulated seconds per second. */
   get factor(): number | null {
     return this.status?.real_time_factor ?? null;
   }
@@ -46,7 +46,7 @@ export class SimulationState {
     this.connection.send({ type: "control_simulation", action });
   }
 
-  /** `address` is a path, or begins with package:// or model://. */
+  /** Adds a model; `address` is a path, or starts with package:// or model://. */
   spawn(address: string, position: readonly number[]): void {
     this.connection.send({ type: "spawn_model", address, position: [...position] });
   }
@@ -55,12 +55,12 @@ export class SimulationState {
     this.connection.send({ type: "delete_model", model });
   }
 
-  /** Moves a model by an offset in the world's frame, m, from where it was when the drag began. */
+  /** Moves a model by an offset in the world's frame, m, from its position at the start of the drag. */
   drag(model: string, offset: readonly number[], begins: boolean): void {
     this.connection.send({ type: "drag_model", model, begins, offset: [...offset] });
   }
 
-  /** Pushes a link for a moment: `force` in the world's frame, N; `point` in the link's, m. */
+  /** Pushes a link for a moment: `force` in the world's frame, N; `point` in the link's frame, m. */
   push(link: string, point: readonly number[], force: readonly number[]): void {
     this.connection.send({ type: "push_link", link, point: [...point], force: [...force] });
   }

@@ -1,72 +1,72 @@
 import type { Connection } from "../connection/connection";
 import { Signal } from "../signal";
 import type { DrawingPace } from "./drawing-pace";
-import type { SlowLine } from "./slow-line";
+import type { SlowConnection } from "./slow-connection";
 
-/** The cause of a page's reduced data rate: its drawing, its program, or the connection between both. */
+/** The cause of a reduced data rate: the drawing of the page, the program, or the connection between them. */
 export type SlowCause = "page" | "program" | "line";
 
-/** The time between two looks at how late the page is, ms. */
-const EVERY_MS = 50;
-/** Looks that count. */
-const LOOKS = 40;
-/** Shares of time in which a busy page counts as late: above the first, until it is below the second. */
-const LATE = 0.3;
-const TIMELY = 0.15;
+/** The interval at which the page's lateness is measured, ms. */
+const INTERVAL_MS = 50;
+/** The number of measurements that are averaged. */
+const AVERAGED = 40;
+/** The page counts as late from the first share of time on, until it falls below the second. */
+const LATE_SHARE = 0.3;
+const TIMELY_SHARE = 0.15;
 
-/** Finds the cause, as long as the page's data rate is reduced. */
+/** Finds the cause while the page's data rate is reduced. */
 export class Slowness {
   readonly changed = new Signal();
   private timer: ReturnType<typeof setTimeout> | undefined;
-  private readonly lates: number[] = [];
-  private pageIsLate = false;
-  private programIsLate = false;
+  private readonly delays: number[] = [];
+  private isPageLate = false;
+  private isProgramLate = false;
 
   constructor(
-    private readonly slowLine: Pick<SlowLine, "changed" | "reduced">,
+    private readonly slowConnection: Pick<SlowConnection, "changed" | "reduced">,
     private readonly pace: Pick<DrawingPace, "isSlow">,
     connection: Connection,
     private readonly now: () => number = () => performance.now(),
   ) {
-    slowLine.changed.on(() => this.follow());
+    slowConnection.changed.on(() => this.startOrStop());
     connection.on("program_is_late", ({ late }) => {
-      this.programIsLate = late;
+      this.isProgramLate = late;
       this.changed.emit();
     });
-    connection.on("hello", () => (this.programIsLate = false));
+    connection.on("hello", () => (this.isProgramLate = false));
   }
 
   get cause(): SlowCause {
-    if (this.pace.isSlow || this.pageIsLate) return "page";
-    return this.programIsLate ? "program" : "line";
+    if (this.pace.isSlow || this.isPageLate) return "page";
+    return this.isProgramLate ? "program" : "line";
   }
 
-  private follow(): void {
-    const wanted = this.slowLine.reduced.length > 0;
-    if (wanted === (this.timer !== undefined)) return;
+  private startOrStop(): void {
+    const isNeeded = this.slowConnection.reduced.length > 0;
+    if (isNeeded === (this.timer !== undefined)) return;
     clearTimeout(this.timer);
     this.timer = undefined;
-    if (wanted) this.lookLater();
+    if (isNeeded) this.scheduleMeasurement();
   }
 
-  /** Messages wait for the page as long as its timers do. */
-  private lookLater(): void {
-    const due = this.now() + EVERY_MS;
+  /** Schedules a measurement: messages wait for a busy page as long as its timers do. */
+  private scheduleMeasurement(): void {
+    const due = this.now() + INTERVAL_MS;
     this.timer = setTimeout(() => {
       // Browsers delay the timers of hidden pages.
-      if (!globalThis.document.hidden) this.take(Math.max(0, this.now() - due));
-      this.lookLater();
-    }, EVERY_MS);
+      if (!globalThis.document.hidden) this.addMeasurement(Math.max(0, this.now() - due));
+      this.scheduleMeasurement();
+    }, INTERVAL_MS);
   }
 
-  private take(late: number): void {
-    this.lates.push(late);
-    if (this.lates.length > LOOKS) this.lates.shift();
-    const sum = this.lates.reduce((all, each) => all + each, 0);
-    const share = sum / (sum + this.lates.length * EVERY_MS);
-    const isLate = this.pageIsLate ? share > TIMELY : share >= LATE;
-    if (isLate === this.pageIsLate) return;
-    this.pageIsLate = isLate;
+  private addMeasurement(late: number): void {
+    this.delays.push(late);
+    if (this.delays.length > AVERAGED) this.delays.shift();
+    const sum = this.delays.reduce((all, delay) => all + delay, 0);
+    const share = sum / (sum + this.delays.length * INTERVAL_MS);
+    const isLate = this.isPageLate ? share > TIMELY_SHARE : share >= LATE_SHARE;
+    if (isLate === this.isPageLate) return;
+    this.isPageLate = isLate;
     this.changed.emit();
   }
 }

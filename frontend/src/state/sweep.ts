@@ -2,16 +2,16 @@ import type { JointControl } from "../protocol";
 
 export type SweepOrder = "one" | "all";
 
-/** Seconds in which a joint goes from its position to its upper limit, to its lower one and back, at speed 1. */
+/** Seconds in which a joint moves from its position to its upper limit, to its lower one and back, at speed 1. */
 const ROUND_S = 4;
 
-/** Every joint through its range, one after another or all at once, over and over. */
+/** Moves every joint through its range, one after another or all simultaneously, repeatedly. */
 export class Sweep {
   private readonly joints: readonly JointControl[];
 
   /**
-   * @param controls joints; those that mimic others are left out.
-   * @param start the positions of the joints, rad or m.
+   * @param controls - the joints; those that mimic others are omitted.
+   * @param start - the positions of the joints, rad or m.
    */
   constructor(
     controls: readonly JointControl[],
@@ -21,7 +21,7 @@ export class Sweep {
     this.joints = controls.filter((joint) => joint.mimic === null);
   }
 
-  /** The positions after so many seconds at speed 1; joints that do not move now keep those of the start. */
+  /** Returns the positions after this many seconds at speed 1; joints that are not moving have their start position. */
   positionsAt(seconds: number): Record<string, number> {
     const round = seconds / ROUND_S;
     const moving = Math.floor(round) % Math.max(1, this.joints.length);
@@ -35,12 +35,15 @@ export class Sweep {
   }
 }
 
-/** The position on the way from `start` to the upper limit, to the lower one and back; `part` of the way, 0 to 1. */
+/**
+ * Returns the position on the way from `start` to the upper limit, to the lower one and back; `part` of the way, 0 to
+ * 1.
+ */
 export function roundTrip({ lower, upper }: Pick<JointControl, "lower" | "upper">, start: number, part: number): number {
   const range = upper - lower;
-  const gone = part * 2 * range;
+  const travelled = part * 2 * range;
   const up = upper - start;
-  if (gone <= up) return start + gone;
-  if (gone <= up + range) return upper - (gone - up);
-  return lower + (gone - up - range);
+  if (travelled <= up) return start + travelled;
+  if (travelled <= up + range) return upper - (travelled - up);
+  return lower + (travelled - up - range);
 }

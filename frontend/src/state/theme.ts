@@ -7,10 +7,10 @@ export type Theme = "dark" | "light";
 
 const KEY = "linkwright.theme";
 
-/** The page's colours: the user's choice, else the system's. Drawings of the scene have their own, as in RViz. */
+/** The page's colours: the user's choice, or else the system's. The scene has colours of its own, as in RViz. */
 export class ThemeState {
   readonly changed = new Signal<Theme>();
-  private chosen: ThemeChoice;
+  private currentChoice: ThemeChoice;
 
   constructor(
     private readonly root: HTMLElement,
@@ -18,22 +18,22 @@ export class ThemeState {
     private readonly system: MediaQueryList,
   ) {
     const remembered = storage.getItem(KEY);
-    this.chosen = THEME_CHOICES.find((each) => each === remembered) ?? "system";
+    this.currentChoice = THEME_CHOICES.find((each) => each === remembered) ?? "system";
     system.addEventListener("change", () => this.apply());
     this.apply();
   }
 
   get choice(): ThemeChoice {
-    return this.chosen;
+    return this.currentChoice;
   }
 
   get theme(): Theme {
-    if (this.chosen !== "system") return this.chosen;
+    if (this.currentChoice !== "system") return this.currentChoice;
     return this.system.matches ? "light" : "dark";
   }
 
   choose(choice: ThemeChoice): void {
-    this.chosen = choice;
+    this.currentChoice = choice;
     this.storage.setItem(KEY, choice);
     this.apply();
   }

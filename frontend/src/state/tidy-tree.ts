@@ -1,4 +1,4 @@
-/** A node to be laid out: its size, and its children. Any unit. */
+/** A node to be laid out: its size in any unit, and its children. */
 export interface TreeNode {
   readonly id: string;
   readonly width: number;
@@ -6,7 +6,7 @@ export interface TreeNode {
   readonly children: readonly TreeNode[];
 }
 
-/** Where the middle of a node is; y grows downwards. */
+/** A node with the position of its centre; y points down. */
 interface PlacedNode {
   readonly node: TreeNode;
   readonly x: number;
@@ -20,22 +20,22 @@ export interface TidyTree {
   readonly height: number;
 }
 
-/** Left and right edge of a subtree, level by level, relative to its top node's middle. */
+/** The left and right edges of a subtree on each level, relative to the centre of its top node. */
 interface Contour {
   left: number[];
   right: number[];
 }
 
 /**
- * A tree with its root at the top: each level in a row, each parent over the middle of its children, subtrees side by
- * side as close as `gap` allows on every level (after Reingold and Tilford).
+ * Lays out a tree with its root at the top: each level in a row, each parent centred over its children, and subtrees as
+ * close to each other as `gap` permits on every level (after Reingold and Tilford).
  */
-export function tidyTree(root: TreeNode, gap: number, levelGap: number): TidyTree {
+export function layOutTree(root: TreeNode, gap: number, levelGap: number): TidyTree {
   const order = preorder(root);
   const offsets = new Map<TreeNode, number>();
   const contours = new Map<TreeNode, Contour>();
-  // From the leaves up; no recursion, for chains may be thousands long.
-  for (const { node } of [...order].reverse()) contours.set(node, settle(node, contours, offsets, gap));
+  // Go from the leaves up, without recursion, because chains may be thousands of nodes long.
+  for (const { node } of [...order].reverse()) contours.set(node, placeChildren(node, contours, offsets, gap));
   const rows = rowTops(order, levelGap);
   const whole = contours.get(root) ?? { left: [0], right: [0] };
   const left = Math.min(...whole.left);
@@ -52,40 +52,40 @@ export function tidyTree(root: TreeNode, gap: number, levelGap: number): TidyTre
   return { nodes, width: Math.max(...whole.right) - left, height: last ? last.top + last.height : 0 };
 }
 
-/** Puts the children of a node side by side and returns the outline of the whole. */
-function settle(
+/** Places the children of a node next to each other and returns the contour of the whole. */
+function placeChildren(
   node: TreeNode,
   contours: ReadonlyMap<TreeNode, Contour>,
   offsets: Map<TreeNode, number>,
   gap: number,
 ): Contour {
-  const outline: Contour = { left: [-node.width / 2], right: [node.width / 2] };
+  const contourOfNode: Contour = { left: [-node.width / 2], right: [node.width / 2] };
   const [only, ...more] = node.children;
-  if (!only) return outline;
+  if (!only) return contourOfNode;
   const below = contours.get(only);
   if (below && more.length === 0) {
-    // No other node needs the child's outline: a long chain has one that grows.
+    // Extend the child's contour in place, because no other node needs it and a chain may be long.
     below.left.unshift(-node.width / 2);
     below.right.unshift(node.width / 2);
     return below;
   }
-  const together: Contour = { left: [], right: [] };
+  const combined: Contour = { left: [], right: [] };
   const xs = node.children.map((child) => {
-    const contour = contours.get(child) ?? outline;
+    const contour = contours.get(child) ?? contourOfNode;
     let x = 0;
     contour.left.forEach((left, level) => {
-      const right = together.right[level];
+      const right = combined.right[level];
       if (right !== undefined) x = Math.max(x, right + gap - left);
     });
-    contour.left.forEach((left, level) => (together.left[level] ??= left + x));
-    contour.right.forEach((right, level) => (together.right[level] = right + x));
+    contour.left.forEach((left, level) => (combined.left[level] ??= left + x));
+    contour.right.forEach((right, level) => (combined.right[level] = right + x));
     return x;
   });
   const middle = ((xs[0] ?? 0) + (xs.at(-1) ?? 0)) / 2;
   node.children.forEach((child, i) => offsets.set(child, (xs[i] ?? 0) - middle));
-  for (const left of together.left) outline.left.push(left - middle);
-  for (const right of together.right) outline.right.push(right - middle);
-  return outline;
+  for (const left of combined.left) contourOfNode.left.push(left - middle);
+  for (const right of combined.right) contourOfNode.right.push(right - middle);
+  return contourOfNode;
 }
 
 function preorder(root: TreeNode): { node: TreeNode; depth: number; above: TreeNode | null }[] {

@@ -4,7 +4,7 @@ import { Signal } from "../signal";
 
 export type SyncMode = TimeState["mode"];
 
-/** The four figures of the Time panel, seconds. */
+/** The four times of the Time panel, s. */
 export interface Times {
   ros: number;
   rosElapsed: number;
@@ -12,11 +12,11 @@ export interface Times {
   wallElapsed: number;
 }
 
-/** Pause, synchronization and clocks, as the server has them for all pages. */
+/** Pause, synchronization and clocks, which the server has for all pages. */
 export class TimeControlState {
   readonly changed = new Signal();
   readonly clockChanged = new Signal();
-  /** Displays were cleared. */
+  /** The displays were cleared. */
   readonly wasReset = new Signal();
   paused = false;
   mode: SyncMode = "Off";
@@ -24,7 +24,7 @@ export class TimeControlState {
   sources: readonly string[] = [];
   private clock: Clock | null = null;
   private clockAt = 0;
-  private watching = false;
+  private isWatching = false;
 
   constructor(
     private readonly connection: Connection,
@@ -40,13 +40,13 @@ export class TimeControlState {
       this.clockChanged.emit();
     });
     connection.on("time_reset", () => this.wasReset.emit());
-    // A new connection does not know this page's subscriptions.
+    // The server does not know this page's subscriptions after a reconnect.
     connection.on("hello", () => {
-      if (this.watching) connection.send({ type: "watch_clock", watching: true });
+      if (this.isWatching) connection.send({ type: "watch_clock", watching: true });
     });
   }
 
-  /** The times of the clocks; null before the server sent any. */
+  /** Returns the current times; null until the server has sent any. */
   times(): Times | null {
     if (!this.clock) return null;
     const { ros, ros_start, wall, wall_start, running } = this.clock;
@@ -58,8 +58,8 @@ export class TimeControlState {
 
   /** Starts or stops the server's reports of the clocks. */
   watch(watching: boolean): void {
-    if (watching === this.watching) return;
-    this.watching = watching;
+    if (watching === this.isWatching) return;
+    this.isWatching = watching;
     this.connection.send({ type: "watch_clock", watching });
   }
 
@@ -68,7 +68,7 @@ export class TimeControlState {
     this.connection.send({ type: "set_time", paused, mode, source });
   }
 
-  /** RViz's Reset button: displays are cleared. */
+  /** Clears all displays, like RViz's Reset button. */
   reset(): void {
     this.connection.send({ type: "reset_time" });
   }

@@ -4,32 +4,32 @@ import { Signal } from "../signal";
 
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10] as const;
 
-/** Two times, s since the epoch. */
+/** A time span, s since the epoch. */
 export interface Span {
   start: number;
   end: number;
 }
 
-/** A recording that the server plays, or the messages of the last minutes: its times, and the playhead. */
+/** The timeline: a recording that the server plays, or the history, with the playhead. */
 export class TimelineState {
   readonly changed = new Signal();
   readonly moved = new Signal();
   private recording: Timeline | null = null;
   private playhead: Playhead | null = null;
-  private extentNow: HistoryExtent | null = null;
-  /** The time that the user seeks, s; shown until the server reaches it. */
+  private historyExtent: HistoryExtent | null = null;
+  /** The time to which the user moved, s; shown until the server reaches it. */
   private target: number | null = null;
-  private asked = false;
-  private wanted = 0;
+  private isSeeking = false;
+  private requestedPosition = 0;
   private marked: Span | null = null;
-  /** The topic whose messages are stepped by; empty for all shown topics. */
+  /** The topic by whose messages to step; empty for all topics shown. */
   stepTopic = "";
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
-      // A new connection knows no earlier requests; a program without a recording reports none.
-      this.recording = this.playhead = this.extentNow = this.target = this.marked = null;
-      this.asked = false;
+      // A new connection has no pending requests, and reports a timeline only if there is one.
+      this.recording = this.playhead = this.historyExtent = this.target = this.marked = null;
+      this.isSeeking = false;
       this.stepTopic = "";
       this.changed.emit();
     });
@@ -38,26 +38,26 @@ export class TimelineState {
       this.changed.emit();
     });
     connection.on("history_extent", (extent) => {
-      this.extentNow = extent;
+      this.historyExtent = extent;
       if (this.recording?.live) this.recording = { ...this.recording, start: extent.start, end: extent.end };
       this.moved.emit();
     });
-    connection.on("playhead", (playhead) => this.take(playhead));
+    connection.on("playhead", (playhead) => this.setPlayhead(playhead));
   }
 
-  /** The timeline that is shown; null where there is none. */
+  /** The current timeline; null if there is none. */
   get timeline(): Timeline | null {
     return this.recording;
   }
 
-  /** Whether the present is shown, and time advances. */
+  /** Whether live data is shown, so that time advances. */
   get live(): boolean {
     return this.playhead?.live ?? false;
   }
 
-  /** The extent of the last minutes; null for a recording. */
+  /** The extent of the history; null for a recording. */
   get extent(): HistoryExtent | null {
-    return this.extentNow;
+    return this.historyExtent;
   }
 
   get playing(): boolean {
@@ -72,31 +72,31 @@ export class TimelineState {
     return this.playhead?.loop ?? false;
   }
 
-  /** Why it cannot be read on, or nothing. */
+  /** Why the recording cannot be read any further; empty if it can. */
   get problem(): string {
     return this.playhead?.problem ?? "";
   }
 
-  /** The time that is shown, s since the epoch. */
+  /** The time shown, s since the epoch. */
   get position(): number {
     if (this.live && this.target === null) return this.recording?.end ?? 0;
     return this.target ?? this.playhead?.position ?? this.recording?.start ?? 0;
   }
 
-  /** The part of the last minutes that the user has marked, as far as it is still kept. */
+  /** The part of the history that the user marked, as far as the history still contains it. */
   get mark(): Span | null {
     const { recording, marked } = this;
     if (!recording?.live || !marked || marked.end <= recording.start) return null;
     return { start: Math.max(marked.start, recording.start), end: Math.min(marked.end, recording.end) };
   }
 
-  /** Marks the part between two times, whichever is the earlier; null for none. */
+  /** Marks the part between two times in either order; null removes the mark. */
   setMark(mark: Span | null): void {
     this.marked = mark && { start: Math.min(mark.start, mark.end), end: Math.max(mark.start, mark.end) };
     this.changed.emit();
   }
 
-  /** Has the mark begin, or end, at the time that is shown. */
+  /** Moves the start or end of the mark to the time shown. */
   markHere(which: "start" | "end"): void {
     const { recording, position } = this;
     if (!recording?.live) return;
@@ -125,26 +125,26 @@ export class TimelineState {
     this.connection.send({ type: "set_playback", speed: this.speed, loop });
   }
 
-  /** Goes to a time. While the server is on its way to one only the newest of the others is kept. */
+  /** Moves to a time. While the server is still processing a move, only the newest further one is kept. */
   seek(position: number): void {
     if (!this.recording) return;
     this.target = Math.min(this.recording.end, Math.max(this.recording.start, position));
-    if (!this.asked) this.ask(this.target);
+    if (!this.isSeeking) this.requestSeek(this.target);
     this.moved.emit();
   }
 
-  private ask(position: number): void {
-    this.asked = true;
-    this.wanted = position;
+  private requestSeek(position: number): void {
+    this.isSeeking = true;
+    this.requestedPosition = position;
     this.connection.send({ type: "seek_time", position });
   }
 
-  private take(playhead: Playhead): void {
+  private setPlayhead(playhead: Playhead): void {
     const before = this.playhead;
     this.playhead = playhead;
-    if (this.asked && before?.seeks !== playhead.seeks) {
-      this.asked = false;
-      if (this.target !== null && this.target !== this.wanted) this.ask(this.target);
+    if (this.isSeeking && before?.seeks !== playhead.seeks) {
+      this.isSeeking = false;
+      if (this.target !== null && this.target !== this.requestedPosition) this.requestSeek(this.target);
       else this.target = null;
     }
     const same = before !== null && (["playing", "live", "speed", "loop", "problem"] as const).every((key) => before[key] === playhead[key]);

@@ -1,10 +1,10 @@
 import type { Connection } from "../connection/connection";
 import type { PropertyValue, Tool, ToolClass } from "../protocol";
 import { Signal } from "../signal";
-import type { Kept } from "./kept";
+import type { PageMemory } from "./page-memory";
 import { PropertyNode, PropertyRows } from "./properties";
 
-/** One tool of the toolbar. */
+/** A tool of the toolbar. */
 export class ToolState {
   readonly id: string;
   readonly cls: string;
@@ -21,64 +21,64 @@ export class ToolState {
   }
 }
 
-/** The tools of the file, and the one that this page has in hand. */
+/** The tools of the file, and the one that is active in this page. */
 export class ToolsState {
-  /** The tools are others now. */
+  /** The list of tools changed. */
   readonly listChanged = new Signal();
-  /** Another tool is in hand. */
+  /** The active tool changed. */
   readonly currentChanged = new Signal<ToolState | null>();
   readonly valueChanged = new Signal<ToolState>();
   readonly hintChanged = new Signal<string>();
-  /** Why the tool in hand refused a request; empty if it did not. */
-  readonly told = new Signal<string>();
+  /** Why the active tool did not do what was requested; empty to hide the notice. */
+  readonly noticeShown = new Signal<string>();
   tools: readonly ToolState[] = [];
-  /** The tools that can be added. */
+  /** The classes of tools that can be added. */
   classes: readonly ToolClass[] = [];
-  private inHand: ToolState | null = null;
-  private text = "";
-  /** The page's tool that this one replaces. */
-  private before: string | null = null;
+  private active: ToolState | null = null;
+  private hintText = "";
+  /** The ID of the tool that was active before the reload of the page. */
+  private activeBefore: string | null = null;
 
   constructor(private readonly connection: Connection) {
-    connection.on("tools", ({ tools, classes }) => this.take(tools, classes));
+    connection.on("tools", ({ tools, classes }) => this.setTools(tools, classes));
     connection.on("tool_property_changed", ({ id, value }) => this.setValue(id, value));
   }
 
-  /** Has the choice of the tool in hand outlive the page. */
-  keep(kept: Kept): void {
-    kept.part("tool", () => this.inHand?.id ?? null, (id) => (this.before = id));
+  /** Preserves the choice of the active tool across reloads of the page. */
+  preserveIn(memory: PageMemory): void {
+    memory.preserve("tool", () => this.active?.id ?? null, (id) => (this.activeBefore = id));
   }
 
   get current(): ToolState | null {
-    return this.inHand;
+    return this.active;
   }
 
-  /** The default tool: the first. */
+  /** The default tool: the first one. */
   get default(): ToolState | null {
     return this.tools.find((tool) => tool.supported) ?? null;
   }
 
   /** The text of the status line about the mouse. */
   get hint(): string {
-    return this.text;
+    return this.hintText;
   }
 
   set hint(text: string) {
-    if (text === this.text) return;
-    this.text = text;
+    if (text === this.hintText) return;
+    this.hintText = text;
     this.hintChanged.emit(text);
   }
 
-  /** Takes a tool in hand. */
+  /** Activates a tool. */
   choose(tool: ToolState | null): void {
-    if (tool === this.inHand || tool?.supported === false) return;
-    this.inHand = tool;
+    if (tool === this.active || tool?.supported === false) return;
+    this.active = tool;
     this.currentChanged.emit(tool);
   }
 
-  /** Takes a tool in hand, or puts it away when it is. */
+  /** Activates a tool, or the default tool if it is active already. */
   toggle(tool: ToolState): void {
-    this.choose(tool === this.inHand ? this.default : tool);
+    this.choose(tool === this.active ? this.default : tool);
   }
 
   setProperty(id: string, value: PropertyValue): void {
@@ -94,13 +94,13 @@ export class ToolsState {
     this.connection.send({ type: "remove_tool", id });
   }
 
-  private take(tools: readonly Tool[], classes: readonly ToolClass[]): void {
-    const before = this.inHand?.id ?? this.before;
+  private setTools(tools: readonly Tool[], classes: readonly ToolClass[]): void {
+    const before = this.active?.id ?? this.activeBefore;
     this.tools = tools.map((tool) => new ToolState(tool));
     this.classes = classes;
-    this.inHand = this.tools.find((tool) => tool.id === before && tool.supported) ?? this.default;
+    this.active = this.tools.find((tool) => tool.id === before && tool.supported) ?? this.default;
     this.listChanged.emit();
-    this.currentChanged.emit(this.inHand);
+    this.currentChanged.emit(this.active);
   }
 
   private setValue(id: string, value: PropertyValue): void {

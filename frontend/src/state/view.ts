@@ -2,10 +2,10 @@ import type { Connection } from "../connection/connection";
 import type { Property, PropertyValue, SavedView, View, ViewClass } from "../protocol";
 import { Signal } from "../signal";
 import type { FrameStore } from "./frames";
-import type { Kept } from "./kept";
+import type { PageMemory } from "./page-memory";
 import { cameraInFixed, cameraInTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
 import { controllerOf } from "./views/catalog";
-import { holds, spanInTarget } from "./views/fit";
+import { contains, spanInTarget } from "./views/fit";
 import { distanceBetween, type Span, type Vector } from "./views/vector";
 import type { Drag, ViewController, ViewValues } from "./views/view-controller";
 
@@ -16,24 +16,30 @@ const CURRENT_NAME = "Current View";
 const TARGET_FRAME = "Target Frame";
 const ANNOUNCE_INTERVAL_MS = 250;
 
-/** The current view and the saved ones. The server proposes one at the start; from then on the page owns its camera. */
+/**
+ * The current view and the saved ones. The server proposes a view at the start; from then on the page controls its
+ * camera.
+ */
 export class ViewState {
   readonly changed = new Signal();
-  /** The saved views, or the classes, are others now. */
+  /** The saved views or the classes changed. */
   readonly listsChanged = new Signal();
   classes: readonly ViewClass[] = [];
   saved: readonly SavedView[] = [];
   private view: View = { cls: ORBIT, name: CURRENT_NAME, values: controllerOf(ORBIT).zero() };
   private configured: View | null = null;
   private showsWholeRobot = false;
-  /** The content when the camera was last placed to show all of it; null: the user has placed it. */
+  /** The content for which the camera was last placed automatically; null once the user has placed it. */
   private lookedAt: { readonly what: string; readonly box: Span | null } | null = null;
-  /** The map that the camera shows all of, if a file placed it and the user has not moved it; "" for none, null: the user has. */
+  /**
+   * The map that the camera was fitted to, if a file placed the camera and the user has not moved it; "" for none yet,
+   * null once the user has moved it.
+   */
   private framedMap: string | null = null;
   private revision: number | null = null;
-  private measuredFor: number | null = null;
-  /** A program that was started again does not know the size of the robots yet, wherever the camera is. */
-  private measuresAgain = false;
+  private reportedRevision: number | null = null;
+  /** Whether a restarted program needs the size of the robots, even if the camera stays. */
+  private needsSize = false;
   private lastTarget: Target = FIXED;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
@@ -60,7 +66,7 @@ export class ViewState {
     return this.view.values;
   }
 
-  /** The rows of the current view's class. */
+  /** The properties of the current view's class. */
   get properties(): readonly Property[] {
     return this.propertiesOf(this.view.cls);
   }
@@ -69,7 +75,10 @@ export class ViewState {
     return controllerOf(this.view.cls);
   }
 
-  /** The frame the camera moves with. One that has no transform any more stays where it was, as in RViz. */
+  /**
+   * The pose of the frame with which the camera moves. If the frame has lost its transform, its last pose is used, as
+   * in RViz.
+   */
   get target(): Target {
     const name = this.view.values[TARGET_FRAME];
     if (typeof name !== "string" || name === FIXED_FRAME) return FIXED;
@@ -91,107 +100,114 @@ export class ViewState {
     return this.classes.find((each) => each.cls === cls)?.properties ?? [];
   }
 
-  /** No one has placed the camera, and the content differs from the one that it was last placed for. */
+  /**
+   * Returns whether the user has not placed the camera, and the content differs from that for which it was last placed.
+   */
   awaitsFit(what: string): boolean {
     return this.lookedAt !== null && what !== this.lookedAt.what;
   }
 
-  /** Has the camera outlive the page. */
-  keep(kept: Kept): void {
+  /** Preserves the camera across reloads of the page. */
+  preserveIn(memory: PageMemory): void {
     const read = () => ({ view: this.view, revision: this.revision, lookedAt: this.lookedAt });
-    kept.part("view", read, (before: ReturnType<typeof read>) => Object.assign(this, before));
+    memory.preserve("view", read, (before: ReturnType<typeof read>) => Object.assign(this, before));
   }
 
-  /** The program was restarted; for other content, the camera starts from its default again. */
+  /** Handles a restart of the program; if it shows other content, the camera starts from its default again. */
   programRestarted(isSame: boolean): void {
-    this.measuresAgain = true;
+    this.needsSize = true;
     if (!isSame) this.revision = null;
   }
 
-  /** The server needs the size of the robots, though the camera stays. */
+  /** Whether the server needs the size of the robots although the camera stays. */
   get awaitsSize(): boolean {
-    return this.measuresAgain;
+    return this.needsSize;
   }
 
-  /** Looks at all of the robots as soon as they are loaded. */
+  /** Fits the robots into view once they are loaded. */
   lookAtRobots(): void {
     this.awaitFirstLook(true);
   }
 
-  /** Keeps the camera where it is, since the user works with it. */
-  stay(): void {
+  /** Keeps the camera in place from now on, because the user works with the view. */
+  keepCamera(): void {
     this.lookedAt = null;
     this.framedMap = null;
   }
 
-  /** Looks at all of a box in the fixed frame, from the side it is seen from, in a canvas of this size. */
+  /** Fits a box in the fixed frame into view from the current direction, in a canvas of this size. */
   fit(box: Span, size: ViewSize): void {
-    this.update(this.fitted(box, size));
+    this.update(this.fitValues(box, size));
   }
 
-  /** As `fit`, for a camera that the user has not placed; repeated when the box has grown, until the user does. */
+  /** Fits a box into view if the user has not placed the camera, and again when the box has grown. */
   fitFirst(box: Span, size: ViewSize, what: string): void {
     const before = this.lookedAt?.box;
-    if (!before || !holds(before, box)) this.update(this.fitted(box, size));
-    this.lookedAt = { what, box: before && holds(before, box) ? before : box };
+    if (!before || !contains(before, box)) this.update(this.fitValues(box, size));
+    this.lookedAt = { what, box: before && contains(before, box) ? before : box };
   }
 
-  /** A file placed the camera, it shows a map from above, and the user has not moved it; it does not show all of this map yet. */
+  /**
+   * Returns whether a file placed the camera above a map, the user has not moved it, and it does not show the whole of
+   * this map yet.
+   */
   awaitsMap(map: string): boolean {
     return this.view.cls === TOP_DOWN && this.framedMap !== null && this.framedMap !== map;
   }
 
-  /** Shows all of a map. The file keeps its own view. */
+  /** Fits a map into view, without changing the view of the file. */
   frameMap(box: Span, size: ViewSize, map: string): void {
     this.framedMap = map;
-    this.view = { ...this.view, values: { ...this.values, ...this.bounded(TOP_DOWN, this.fitted(box, size)) } };
+    this.view = { ...this.view, values: { ...this.values, ...this.withinBounds(TOP_DOWN, this.fitValues(box, size)) } };
     this.changed.emit();
   }
 
   /**
-   * Reports the size of the robots, as long as the user has not moved the camera or to a program that was restarted, and
-   * the height of the ground below them, once all of them are loaded.
+   * Reports the size of the robots and the height of the ground below them, once all are loaded, if the user has not
+   * moved the camera or the program was restarted.
    */
-  measured({ min, max }: Span, ground: number): void {
-    if (!this.measuresAgain && (this.lookedAt === null || this.measuredFor === this.revision)) return;
-    this.measuresAgain = false;
-    this.measuredFor = this.revision;
+  reportSize({ min, max }: Span, ground: number): void {
+    if (!this.needsSize && (this.lookedAt === null || this.reportedRevision === this.revision)) return;
+    this.needsSize = false;
+    this.reportedRevision = this.revision;
     this.connection.send({ type: "robot_measured", diagonal: distanceBetween(min, max), ground });
   }
 
-  /** Sets the values of a camera that the user has not placed; it waits for more content, unless `isLast`. */
+  /**
+   * Sets the values of a camera that the user has not placed; unless `isLast`, it is placed again for further content.
+   */
   propose(values: ViewValues, what: string, isLast: boolean): void {
     this.update(values);
     if (!isLast) this.lookedAt = { what, box: null };
   }
 
-  /** Takes values, each within the bounds of its property. */
+  /** Sets values, limited to the bounds of their properties. */
   update(values: ViewValues): void {
-    this.change({ ...this.view, values: { ...this.view.values, ...this.bounded(this.view.cls, values) } });
+    this.change({ ...this.view, values: { ...this.view.values, ...this.withinBounds(this.view.cls, values) } });
   }
 
   drag(drag: Drag): void {
     this.update(this.controller.drag(this.view.values, drag));
   }
 
-  /** `delta` is 120 a notch, positive away from the user. */
+  /** Handles the wheel; `delta` is 120 per notch, positive away from the user. */
   wheel(delta: number, shift: boolean): void {
     this.update(this.controller.wheel(this.view.values, delta, shift));
   }
 
-  /** Sets the focal point, in the fixed frame. */
+  /** Moves the focal point, given in the fixed frame. */
   lookAt(point: Vector): void {
     this.update(this.controller.lookAt(this.view.values, toTarget(point, this.target)));
   }
 
-  /** Another class of view, that looks as the one before does. */
+  /** Changes the class of the view, and keeps the camera as far as the class permits. */
   setClass(cls: string): void {
     if (cls === this.view.cls) return;
     const before = this.view;
     const inFixed = this.camera;
     const defaults = this.defaultsOf(cls);
-    const kept = before.values[TARGET_FRAME];
-    this.view = { ...before, cls, values: kept === undefined ? defaults : { ...defaults, [TARGET_FRAME]: kept } };
+    const targetFrame = before.values[TARGET_FRAME];
+    this.view = { ...before, cls, values: targetFrame === undefined ? defaults : { ...defaults, [TARGET_FRAME]: targetFrame } };
     const camera = cameraInTarget(inFixed, this.target);
     this.update(this.controller.mimic({ cls: before.cls, values: before.values, camera }));
   }
@@ -203,18 +219,18 @@ export class ViewState {
     this.update(this.controller.retarget(this.view.values, before, this.target));
   }
 
-  /** Sets one property as its row in the Views panel does. */
+  /** Sets a property as its row in the Views panel does. */
   set(path: string, value: PropertyValue): void {
     if (path === TARGET_FRAME) this.setTargetFrame(String(value));
     else this.update({ [path]: value });
   }
 
-  /** RViz's Zero button. */
+  /** Applies RViz's Zero button. */
   zero(): void {
     this.update(this.controller.zero());
   }
 
-  /** Back to the view of the configuration file, or to all of the robot where it has none. */
+  /** Restores the view of the configuration file, or fits the robots into view if there is none. */
   reset(): void {
     if (!this.configured) this.zero();
     else {
@@ -230,7 +246,7 @@ export class ViewState {
     this.connection.send({ type: "save_view", view: { ...copyOf(this.view), name } });
   }
 
-  /** Looks as a saved view does. */
+  /** Applies a saved view. */
   use(id: string): void {
     const saved = this.saved.find((each) => each.id === id);
     if (saved) this.change({ ...copyOf(saved.view), name: CURRENT_NAME });
@@ -245,7 +261,7 @@ export class ViewState {
     const saved = this.saved.find((each) => each.id === id);
     if (!saved) return;
     const { cls, values } = saved.view;
-    this.changeSaved(id, { ...saved.view, values: { ...values, ...this.bounded(cls, { [path]: value }) } });
+    this.changeSaved(id, { ...saved.view, values: { ...values, ...this.withinBounds(cls, { [path]: value }) } });
   }
 
   remove(id: string): void {
@@ -254,7 +270,7 @@ export class ViewState {
 
   // --------------------------------------------------------------------------------------------------------------
 
-  /** Applies the view of a configuration, once; a reconnect does not move the user's camera, another file does. */
+  /** Applies the view of a configuration once: a reconnect does not move the user's camera, but another file does. */
   private configure(view: View, revision: number, showsWholeRobot: boolean): void {
     const known = this.revision === revision;
     this.configured = view;
@@ -271,7 +287,7 @@ export class ViewState {
     this.framedMap = "";
   }
 
-  private fitted(box: Span, size: ViewSize): ViewValues {
+  private fitValues(box: Span, size: ViewSize): ViewValues {
     return this.controller.fit(this.view.values, spanInTarget(box, this.target), size);
   }
 
@@ -298,7 +314,7 @@ export class ViewState {
     return this.classes.find((each) => each.cls === cls)?.defaults ?? controllerOf(cls).zero();
   }
 
-  private bounded(cls: string, values: ViewValues): ViewValues {
+  private withinBounds(cls: string, values: ViewValues): ViewValues {
     const result: Record<string, PropertyValue> = {};
     for (const [path, value] of Object.entries(values)) {
       const property = find(this.propertiesOf(cls), path);

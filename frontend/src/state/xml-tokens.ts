@@ -1,4 +1,4 @@
-/** The kind of a piece of XML text, for its colour. */
+/** The kind of a token of XML text, which determines its colour. */
 type TokenKind = "text" | "tag" | "attribute" | "value" | "expression" | "comment" | "punctuation";
 
 export interface Token {
@@ -6,10 +6,10 @@ export interface Token {
   readonly text: string;
 }
 
-/** The construct that a line begins inside of. */
+/** The construct within which a line begins. */
 export type LineState = "text" | "tag" | "comment" | "cdata" | "instruction" | '"' | "'";
 
-/** One way into the parts that continue over line ends, and the way out of each. */
+/** Constructs that may span lines, with their ends and their openings. */
 const ENDS: Readonly<Partial<Record<LineState, string>>> = { comment: "-->", cdata: "]]>", instruction: "?>" };
 const OPENINGS: readonly (readonly [string, LineState])[] = [
   ["<!--", "comment"],
@@ -20,27 +20,30 @@ const TAG_PART = /^(?:\s+|\/?>|[^\s=/>"'<]+|=|["']|.)/u;
 /** A xacro expression or substitution in a value. */
 const EXPRESSION = /\$\$?(?:\{[^}]*\}?|\([^)]*\)?)/g;
 
-/** A line of text and whole tags without surprises, as nearly all are: it ends in the text in which it began. */
-const PLAIN = /^[^<]*(?:<[^<>"'!?]*(?:"[^"<>]*"[^<>"']*)*>[^<]*)*$/;
+/** A line that consists of text and complete tags only, as most do, and therefore ends as it began. */
+const PLAIN_LINE = /^[^<]*(?:<[^<>"'!?]*(?:"[^"<>]*"[^<>"']*)*>[^<]*)*$/;
 
-/** The tokens of one line that begins in `state`, and the state of the next line. Together they are the line. */
+/**
+ * Returns the tokens of a line that begins in `state`, and the state of the next line. The tokens concatenated are the
+ * line.
+ */
 export function tokenize(line: string, state: LineState): { tokens: Token[]; state: LineState } {
   const scanner = new Scanner(line, state);
   scanner.run();
   return { tokens: scanner.tokens, state: scanner.state };
 }
 
-/** The state at the beginning of each line. */
+/** Returns the state at the beginning of each line. */
 export function lineStates(lines: readonly string[]): LineState[] {
   let state: LineState = "text";
   return lines.map((line) => {
     const before = state;
-    if (state !== "text" || !PLAIN.test(line)) state = tokenize(line, state).state;
+    if (state !== "text" || !PLAIN_LINE.test(line)) state = tokenize(line, state).state;
     return before;
   });
 }
 
-/** Reads one line. Each step consumes at least a character, or changes the state. */
+/** Reads a line. Each step consumes at least one character, or changes the state. */
 class Scanner {
   readonly tokens: Token[] = [];
   private expectsName = false;
@@ -63,58 +66,58 @@ class Scanner {
   private readUntil(end: string): void {
     const at = this.rest.indexOf(end);
     const kind = this.state === "cdata" ? "text" : "comment";
-    this.take(kind, at < 0 ? this.rest.length : at + end.length);
+    this.push(kind, at < 0 ? this.rest.length : at + end.length);
     if (at >= 0) this.state = "text";
   }
 
   private readValue(quote: string): void {
     const at = this.rest.indexOf(quote);
-    this.takeMixed("value", at < 0 ? this.rest.length : at);
+    this.pushMixed("value", at < 0 ? this.rest.length : at);
     if (at < 0) return;
-    this.take("value", 1);
+    this.push("value", 1);
     this.state = "tag";
   }
 
   private readTagPart(): void {
     const part = TAG_PART.exec(this.rest)?.[0] ?? this.rest;
     if (part === '"' || part === "'") {
-      this.take("value", 1);
+      this.push("value", 1);
       this.state = part;
     } else if (part === "=" || part === "/" || part.endsWith(">") || /^\s/.test(part)) {
-      this.take("punctuation", part.length);
+      this.push("punctuation", part.length);
       if (part.endsWith(">")) this.state = "text";
     } else {
-      this.take(this.expectsName ? "tag" : "attribute", part.length);
+      this.push(this.expectsName ? "tag" : "attribute", part.length);
       this.expectsName = false;
     }
   }
 
   private readText(): void {
     const at = this.rest.indexOf("<");
-    this.takeMixed("text", at < 0 ? this.rest.length : at);
+    this.pushMixed("text", at < 0 ? this.rest.length : at);
     if (at < 0) return;
     const opening = OPENINGS.find(([text]) => this.rest.startsWith(text));
     if (opening) {
       this.state = opening[1];
       return;
     }
-    this.take("punctuation", /^<[/!]/.test(this.rest) ? 2 : 1);
+    this.push("punctuation", /^<[/!]/.test(this.rest) ? 2 : 1);
     this.state = "tag";
     this.expectsName = true;
   }
 
   /** Consumes text that may contain expressions. */
-  private takeMixed(kind: TokenKind, length: number): void {
+  private pushMixed(kind: TokenKind, length: number): void {
     let at = 0;
     for (const match of this.rest.slice(0, length).matchAll(EXPRESSION)) {
-      this.take(kind, match.index - at);
-      this.take("expression", match[0].length);
+      this.push(kind, match.index - at);
+      this.push("expression", match[0].length);
       at = match.index + match[0].length;
     }
-    this.take(kind, length - at);
+    this.push(kind, length - at);
   }
 
-  private take(kind: TokenKind, length: number): void {
+  private push(kind: TokenKind, length: number): void {
     if (length > 0) this.tokens.push({ kind, text: this.rest.slice(0, length) });
     this.rest = this.rest.slice(length);
   }

@@ -1,4 +1,4 @@
-/** `#303030` as RViz writes it: `48; 48; 48`. */
+/** Returns `#303030` in RViz's notation: `48; 48; 48`. */
 export function formatColor(hex: string): string {
   const match = /^#([0-9a-f]{2})([0-9a-f]{2})([0-9a-f]{2})$/i.exec(hex);
   if (!match) return hex;
@@ -8,7 +8,7 @@ export function formatColor(hex: string): string {
     .join("; ");
 }
 
-/** Reads `48; 48; 48`, `48, 48, 48`, `48 48 48` or `#303030`; null when it is not a colour. */
+/** Parses `48; 48; 48`, `48, 48, 48`, `48 48 48` or `#303030`; returns null if the text is not a colour. */
 export function parseColor(text: string): string | null {
   const trimmed = text.trim();
   if (/^#[0-9a-f]{6}$/i.test(trimmed)) return trimmed.toLowerCase();

@@ -3,7 +3,7 @@ import { h } from "../dom";
 const SMALLEST = 0.2;
 const LARGEST = 0.8;
 
-/** The line between names and values, to be dragged. */
+/** The draggable line between names and values. */
 export class ColumnSplitter {
   readonly element = h("div", { class: "splitter", aria: { hidden: "true" } });
 

@@ -7,7 +7,7 @@ import { clamp, formatNumber, parseNumber, stepFor } from "./numbers";
 import { TextEditor } from "./text-editor";
 import type { Editor, TreeItem } from "./tree-item";
 
-/** Makes the editor for an item; `current` gives the newest item of the row, `frames` the frames to offer. */
+/** Creates the editor for an item; `current` returns the newest item of the row, `frames` the frames to offer. */
 export function createEditor(item: TreeItem, current: () => TreeItem, frames: () => readonly string[]): Editor {
   const commit = (value: PropertyValue): void => current().set?.(value);
   if (item.kind === "group") return new PlainText();
@@ -25,7 +25,7 @@ export function createEditor(item: TreeItem, current: () => TreeItem, frames: ()
     case "float":
       return numberEditor(item.kind === "int", current, commit);
     case "topic":
-      return new NameEditor(commit, strings.displays.topics, (each, show) => each.ask?.(show), true);
+      return new NameEditor(commit, strings.displays.topics, (each, show) => each.requestNames?.(show), true);
     case "string":
       if (item.options?.length) {
         return new NameEditor(commit, strings.suggestions, ({ options }, show) => show(options ?? []), true);
@@ -40,7 +40,7 @@ function display(value: PropertyValue): string {
 }
 
 function numberEditor(whole: boolean, current: () => TreeItem, commit: (value: PropertyValue) => void): Editor {
-  const legal = (value: number): number => {
+  const bounded = (value: number): number => {
     const { minimum, maximum } = current();
     return clamp(whole ? Math.round(value) : value, minimum ?? null, maximum ?? null);
   };
@@ -49,13 +49,13 @@ function numberEditor(whole: boolean, current: () => TreeItem, commit: (value: P
     format: display,
     parse: (text) => {
       const value = parseNumber(text);
-      return value === null ? null : legal(value);
+      return value === null ? null : bounded(value);
     },
     step: (text, direction) => {
       const value = parseNumber(text);
       if (value === null) return null;
       const step = stepFor(value, whole);
-      return legal(Number((value + direction * step).toPrecision(12)));
+      return bounded(Number((value + direction * step).toPrecision(12)));
     },
     commit,
   });

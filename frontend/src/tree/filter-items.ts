@@ -1,15 +1,15 @@
 import type { TreeItem } from "./tree-item";
 
-/** The items whose name has `text` in it, with their ancestors, opened, and all their descendants. */
+/** Returns the items whose name contains `text`, with their ancestors, unfolded, and all their descendants. */
 export function filterItems(items: readonly TreeItem[], text: string): readonly TreeItem[] {
-  const wanted = text.trim().toLowerCase();
-  return wanted === "" ? items : items.flatMap((item) => filtered(item, wanted));
+  const query = text.trim().toLowerCase();
+  return query === "" ? items : items.flatMap((item) => matching(item, query));
 }
 
-function filtered(item: TreeItem, wanted: string): TreeItem[] {
-  if (item.name.toLowerCase().includes(wanted)) return [item];
-  const below = (item.children?.() ?? []).flatMap((child) => filtered(child, wanted));
+function matching(item: TreeItem, query: string): TreeItem[] {
+  if (item.name.toLowerCase().includes(query)) return [item];
+  const below = (item.children?.() ?? []).flatMap((child) => matching(child, query));
   if (below.length === 0) return [];
-  // Its value may be one that is read each time it is shown.
+  // Keep the getter: the value may be read each time it is shown.
   return [{ ...item, get value() { return item.value; }, open: true, children: () => below }];
 }

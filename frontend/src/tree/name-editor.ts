@@ -5,10 +5,10 @@ import { strings } from "../strings";
 import { TextEditor } from "./text-editor";
 import type { Editor, TreeItem } from "./tree-item";
 
-/** Offers the names to choose from, at once or when they are known. */
+/** Passes the names to choose from to `show`, immediately or once they are known. */
 export type Offer = (item: TreeItem, show: (names: readonly string[]) => void) => void;
 
-/** The name of a frame or topic: any text, or one of those known from a list. */
+/** An editor for the name of a frame or topic: any text, or a name from a list. */
 export class NameEditor implements Editor {
   readonly element: HTMLElement;
   private readonly text: TextEditor;
@@ -62,7 +62,7 @@ export class NameEditor implements Editor {
     this.list = h("ul", { class: "popup", role: "listbox", aria: { label: this.label } }, ...entries);
     if (entries.length === 0) this.list.append(h("li", { role: "option", tabIndex: -1 }, strings.tree.noNames));
     this.list.addEventListener("click", (event) => this.choose(event.target as HTMLElement));
-    this.list.addEventListener("keydown", (event) => this.keyed(event));
+    this.list.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.list.addEventListener("focusout", (event) => {
       if (!this.list?.contains(event.relatedTarget as Node | null)) this.close();
     });
@@ -90,7 +90,7 @@ export class NameEditor implements Editor {
     this.element.closest<HTMLElement>("[role=treeitem]")?.focus();
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const entry = event.target as HTMLElement;
     if (event.key === "ArrowDown") (entry.nextElementSibling as HTMLElement | null)?.focus();
     else if (event.key === "ArrowUp") (entry.previousElementSibling as HTMLElement | null)?.focus();

@@ -1,28 +1,31 @@
-/** From here on a number with a given count of decimals is written with an exponent. */
-const LARGE = 1e6;
+/** From this size on, numbers with fixed decimals are written with an exponent. */
+const EXPONENT_FROM = 1e6;
 
-/** A number as a property row shows it: at most six significant digits, no trailing zeros. */
+/** Returns a number as in a property row: at most six significant digits, no trailing zeros. */
 export function formatNumber(value: number): string {
   if (!Number.isFinite(value)) return String(value);
   const text = String(Number(value.toPrecision(6)));
   return text === "-0" ? "0" : text;
 }
 
-/** `1; 2; 3`, with five digits for the largest number as RViz has them, and no finer ones for the others. */
+/** Returns `1; 2; 3` with five digits for the largest number, as in RViz, and as many decimals for the others. */
 export function formatPoint(values: readonly number[]): string {
   const largest = Math.max(...values.map(Math.abs));
   const digits = largest > 0 ? Math.min(Math.max(4 - Math.floor(Math.log10(largest)), 0), 12) : 0;
   return values.map((value) => formatNumber(Number(value.toFixed(digits)))).join("; ");
 }
 
-/** A number with so many digits after the point, and none that is minus zero; a large one, as a limit that is none, with an exponent. */
+/**
+ * Returns a number with fixed decimals and without minus zero; a large one, such as a limit that stands for none, has
+ * an exponent.
+ */
 export function formatFixed(value: number, digits: number): string {
-  if (Math.abs(value) >= LARGE) return value.toExponential(2);
+  if (Math.abs(value) >= EXPONENT_FROM) return value.toExponential(2);
   const text = value.toFixed(digits);
   return Number(text) === 0 ? (0).toFixed(digits) : text;
 }
 
-/** Reads a number that a user typed, with a point or a comma; null when it is not a number. */
+/** Parses a number that a user typed, with a point or a comma; returns null if it is not a number. */
 export function parseNumber(text: string): number | null {
   const trimmed = text.trim().replace(",", ".");
   if (trimmed === "") return null;
@@ -36,7 +39,7 @@ export function clamp(value: number, minimum: number | null, maximum: number | n
   return value;
 }
 
-/** The step of an arrow key for a number, by its size; 1 for integers. */
+/** Returns the step of an arrow key for a number, by its magnitude; 1 for integers. */
 export function stepFor(value: number, whole: boolean): number {
   if (whole) return 1;
   const size = Math.abs(value);

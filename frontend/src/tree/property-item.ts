@@ -2,7 +2,7 @@ import type { PropertyValue } from "../protocol";
 import type { PropertyNode } from "../state/properties";
 import type { TreeItem } from "./tree-item";
 
-/** The row of a property and those below it; an edit calls `set` with the property's id. */
+/** Returns the row of a property with the rows below it; an edit calls `set` with the property's ID. */
 export function propertyItem(node: PropertyNode, set: (id: string, value: PropertyValue) => void): TreeItem {
   return {
     key: node.id,

@@ -4,15 +4,15 @@ import type { Editor, TreeItem } from "./tree-item";
 
 export interface TextEditorOptions {
   format: (value: PropertyValue) => string;
-  /** The value of a text, or null when it is invalid: the old value returns. */
+  /** Returns the value of a text; null if it is invalid, which restores the old value. */
   parse: (text: string) => PropertyValue;
   commit: (value: PropertyValue) => void;
-  /** The text after an up or down key. */
+  /** Returns the value after an up or down key. */
   step?: (text: string, direction: 1 | -1) => number | null;
   numeric?: boolean;
 }
 
-/** A line of text that becomes a value on Enter or when it is left, and the old one again on Escape. */
+/** A text field whose content becomes a value on Enter or when it loses the focus; Escape restores the old value. */
 export class TextEditor implements Editor {
   readonly element: HTMLInputElement;
   private shown = "";
@@ -25,8 +25,8 @@ export class TextEditor implements Editor {
     this.element.autocomplete = "off";
     if (options.numeric === true) this.element.inputMode = "decimal";
     this.element.addEventListener("focus", () => this.element.select());
-    this.element.addEventListener("blur", () => this.take());
-    this.element.addEventListener("keydown", (event) => this.keyed(event));
+    this.element.addEventListener("blur", () => this.commitText());
+    this.element.addEventListener("keydown", (event) => this.onKeyDown(event));
   }
 
   show(item: TreeItem): void {
@@ -42,7 +42,7 @@ export class TextEditor implements Editor {
     return true;
   }
 
-  private take(): void {
+  private commitText(): void {
     if (this.element.value === this.shown) return;
     const value = this.options.parse(this.element.value);
     this.element.value = value === null ? this.shown : this.options.format(value);
@@ -51,21 +51,21 @@ export class TextEditor implements Editor {
     this.options.commit(value);
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     if (event.key === "Enter") {
-      this.take();
-      leave(this.element);
+      this.commitText();
+      focusRow(this.element);
     } else if (event.key === "Escape") {
       this.element.value = this.shown;
-      leave(this.element);
+      focusRow(this.element);
     } else if ((event.key === "ArrowUp" || event.key === "ArrowDown") && this.options.step) {
       const value = this.options.step(this.element.value, event.key === "ArrowUp" ? 1 : -1);
       if (value !== null) {
         this.element.value = this.options.format(value);
-        this.take();
+        this.commitText();
       }
     } else {
-      // The tree's own keys do not apply while a text is edited.
+      // The tree's own keys must not act while a text is edited.
       event.stopPropagation();
       return;
     }
@@ -74,7 +74,7 @@ export class TextEditor implements Editor {
   }
 }
 
-/** Gives the keyboard back to the row. */
-function leave(element: HTMLElement): void {
+/** Returns the focus to the row. */
+function focusRow(element: HTMLElement): void {
   element.closest<HTMLElement>("[role=treeitem]")?.focus();
 }

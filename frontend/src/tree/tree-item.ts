@@ -2,54 +2,54 @@ import type { IconName } from "../icons";
 import type { PropertyKind, PropertyValue } from "../protocol";
 import type { ShownLevel } from "../state/displays";
 
-/** One row of a property tree, as the tree draws it. */
+/** A row of a property tree. */
 export interface TreeItem {
-  /** Unique in its tree and the same from one refresh to the next. */
+  /** Unique within its tree, and the same in every refresh. */
   readonly key: string;
   readonly name: string;
   readonly kind: PropertyKind;
   readonly value: PropertyValue;
   readonly description: string;
   readonly icon?: IconName;
-  /** Colours the row; a sign is shown too unless it is a display's own row. */
+  /** Sets the colour of the row, and the icon if `showLevelIcon` is set. */
   readonly level?: ShownLevel;
   readonly showLevelIcon?: boolean;
   readonly strong?: boolean;
   readonly muted?: boolean;
-  /** The tooltip of the name; by default, the name. */
+  /** The tooltip of the name; the name by default. */
   readonly hint?: string;
-  /** Its name fills the row. */
+  /** Whether the name fills the whole row. */
   readonly wide?: boolean;
-  /** Several of such rows can be selected at once. */
-  readonly severally?: boolean;
-  /** Shown behind the name, small. */
+  /** Whether several rows of this kind can be selected together. */
+  readonly multiSelectable?: boolean;
+  /** A small text after the name. */
   readonly badge?: string;
   readonly options?: readonly string[];
   readonly minimum?: number | null;
   readonly maximum?: number | null;
   readonly readOnly?: boolean;
-  /** Whether the row is open before the user decides. */
+  /** Whether the row is unfolded until the user folds it. */
   readonly expanded?: boolean;
-  /** The row is open against the user's choice: a search found a row below it. */
+  /** Overrides the user's choice: a search unfolds the row because it found a row below it. */
   readonly open?: boolean;
   readonly children?: () => readonly TreeItem[];
-  /** A double click on the name, or Enter on the row. */
+  /** Called on a double click on the name, or Enter on the row. */
   readonly activate?: () => void;
-  /** Whether its value is read each time it is shown: it changes with the drawing of the page. */
+  /** Whether the value follows the scene, and is read each time it is shown. */
   readonly live?: boolean;
-  /** Asks for the names to choose from, of a `topic`. */
-  readonly ask?: (show: (names: readonly string[]) => void) => void;
-  /** Takes an edit; a row without it is read-only. */
+  /** Requests the names to choose from, for a row of the kind `topic`. */
+  readonly requestNames?: (show: (names: readonly string[]) => void) => void;
+  /** Applies an edit; a row without it is read-only. */
   readonly set?: (value: PropertyValue) => void;
 }
 
-/** The right half of a row. */
+/** The value part of a row. */
 export interface Editor {
   readonly element: HTMLElement;
-  /** Shows the item's value, unless the user is just editing it. */
+  /** Shows the item's value, unless the user is editing it. */
   show(item: TreeItem): void;
-  /** Takes the keyboard; false when there is nothing to edit. */
+  /** Takes the focus; returns false if there is nothing to edit. */
   focus(): boolean;
-  /** Space on the row: flips a box. */
+  /** Toggles a box, when Space is pressed on the row. */
   toggle?(): void;
 }

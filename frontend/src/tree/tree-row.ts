@@ -3,7 +3,7 @@ import { icon, LEVEL_ICONS } from "../icons";
 import { createEditor } from "./editors";
 import type { Editor, TreeItem } from "./tree-item";
 
-/** One row's elements; it lives as long as its key is visible. */
+/** The elements of a row, which exist while its key is visible. */
 export class TreeRow {
   readonly element: HTMLElement;
   readonly editor: Editor;

@@ -1,31 +1,34 @@
 import { coalesced, h } from "../dom";
 import { Signal } from "../signal";
-import type { Kept } from "../state/kept";
+import type { PageMemory } from "../state/page-memory";
 import { ColumnSplitter } from "./column-splitter";
 import type { TreeItem } from "./tree-item";
 import { TreeRow } from "./tree-row";
 
-interface Line {
+interface VisibleItem {
   item: TreeItem;
   depth: number;
   expanded: boolean;
 }
 
-/** A property tree: names left, values right, everything reachable by keyboard. */
+/** A property tree with names on the left and values on the right, fully usable by keyboard. */
 export class TreeView {
   readonly element: HTMLElement;
   private readonly list: HTMLElement;
   readonly selected = new Signal<TreeItem>();
-  /** Redraws before the next painting, reading all items again. */
+  /** Redraws before the next paint, reading all items again. */
   readonly refresh = coalesced(() => this.render());
   private readonly rows = new Map<string, TreeRow>();
   private readonly expansion = new Map<string, boolean>();
-  private lines: Line[] = [];
+  private lines: VisibleItem[] = [];
   private selectedKey: string | null = null;
-  /** The other selected rows, of those that allow a multiple selection. */
+  /** The other selected rows, among those that permit a multiple selection. */
   private readonly others = new Set<string>();
   private scrollTo: string | null = null;
-  /** A row stays under the pointer from press to release, which else were on another row, and no click. */
+  /**
+   * Whether a mouse button is pressed: rows must not move until its release, which would otherwise be on another row
+   * and cause no click.
+   */
   private isPressed = false;
 
   constructor(
@@ -35,10 +38,10 @@ export class TreeView {
   ) {
     this.list = h("div", { class: "tree", role: "tree", aria: { label, multiselectable: "true" } });
     this.element = h("div", { class: "tree-box" }, this.list, new ColumnSplitter().element);
-    this.list.addEventListener("mousedown", (event) => this.pressed(event));
-    this.list.addEventListener("click", (event) => this.clicked(event));
-    this.list.addEventListener("dblclick", (event) => this.doubleClicked(event));
-    this.list.addEventListener("keydown", (event) => this.keyed(event));
+    this.list.addEventListener("mousedown", (event) => this.onMouseDown(event));
+    this.list.addEventListener("click", (event) => this.onClick(event));
+    this.list.addEventListener("dblclick", (event) => this.onDoubleClick(event));
+    this.list.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.list.addEventListener("focusin", (event) => {
       const key = keyOf(event.target);
       if (key !== null && !this.isSelected(key)) this.select(key);
@@ -46,7 +49,7 @@ export class TreeView {
     this.refresh();
   }
 
-  /** Opens the rows of `path`, from the top, and selects and shows the last one without taking the keyboard. */
+  /** Unfolds the rows of `path`, from the top, and selects and reveals the last one without taking the focus. */
   reveal(path: readonly string[]): void {
     for (const key of path.slice(0, -1)) this.expansion.set(key, true);
     this.selectedKey = path.at(-1) ?? null;
@@ -55,34 +58,34 @@ export class TreeView {
     this.refresh();
   }
 
-  /** Has it outlive the page which rows are open and selected. */
-  keep(kept: Kept, name: string): void {
+  /** Preserves which rows are unfolded and selected across reloads of the page. */
+  preserveIn(memory: PageMemory, name: string): void {
     const read = () => ({ expansion: [...this.expansion], selected: this.selectedKey });
-    kept.part(`tree ${name}`, read, ({ expansion, selected }: ReturnType<typeof read>) => {
+    memory.preserve(`tree ${name}`, read, ({ expansion, selected }: ReturnType<typeof read>) => {
       for (const [key, expanded] of expansion) this.expansion.set(key, expanded);
       this.scrollTo = this.selectedKey = selected;
     });
   }
 
-  /** Whether a visible row has a value that changes with the page's drawing. */
+  /** Whether a visible row has a value that follows the scene. */
   get showsLive(): boolean {
     return this.lines.some(({ item }) => item.live);
   }
 
-  /** Shows the values of such rows as they are now. */
+  /** Updates the values that follow the scene. */
   showLive(): void {
     for (const { item } of this.lines) {
       if (item.live) this.rows.get(item.key)?.editor.show(item);
     }
   }
 
-  /** Forgets which of some rows the user opened and closed. */
-  forgetExpansion(of: (key: string) => boolean): void {
+  /** Resets the user's folding of some rows to the default. */
+  resetExpansion(of: (key: string) => boolean): void {
     for (const key of this.expansion.keys()) if (of(key)) this.expansion.delete(key);
     this.refresh();
   }
 
-  /** Opens or closes a row and everything below it. */
+  /** Unfolds or folds a row and everything below it. */
   expandAll(item: TreeItem, expanded: boolean): void {
     this.expansion.set(item.key, expanded);
     for (const child of item.children?.() ?? []) if (child.children) this.expandAll(child, expanded);
@@ -94,12 +97,12 @@ export class TreeView {
     return this.selectedKey !== null && this.rows.has(this.selectedKey) ? this.selectedKey : null;
   }
 
-  /** The keys of all rows that are selected, from the top. */
+  /** The keys of all selected rows, from the top. */
   get selections(): string[] {
     return this.lines.map(({ item }) => item.key).filter((key) => this.isSelected(key));
   }
 
-  /** The row that an event is about. */
+  /** Returns the row that contains an event's target. */
   itemAt(target: EventTarget | null): { item: TreeItem; element: HTMLElement } | null {
     const row = this.rows.get(keyOf(target) ?? "");
     return row ? { item: row.item, element: row.element } : null;
@@ -123,10 +126,10 @@ export class TreeView {
       elements.push(row.element);
     }
     for (const key of this.rows.keys()) if (!keep.has(key)) this.rows.delete(key);
-    arrange(this.list, elements);
+    setChildren(this.list, elements);
     const [first] = elements;
     if (first && (this.selectedKey === null || !keep.has(this.selectedKey))) first.tabIndex = 0;
-    // The row with the focus was removed: the one in its place gets it.
+    // If the focused row was removed, the row in its place gets the focus.
     if (focused >= 0 && !this.list.contains(document.activeElement)) {
       this.focusLine(Math.min(focused, this.lines.length - 1));
     }
@@ -138,7 +141,7 @@ export class TreeView {
     const row = this.rows.get(this.scrollTo);
     this.scrollTo = null;
     if (row) this.selected.emit(row.item);
-    // Observers of the selection may only now take their place below the rows.
+    // Scroll last: observers of the selection may have reduced the space for rows.
     row?.element.scrollIntoView({ block: "nearest" });
   }
 
@@ -166,7 +169,7 @@ export class TreeView {
 
   private select(key: string, keep = false): void {
     if (!keep) this.others.clear();
-    else if (this.selectedKey !== null && this.isSeveral(this.selectedKey)) this.others.add(this.selectedKey);
+    else if (this.selectedKey !== null && this.isMultiSelectable(this.selectedKey)) this.others.add(this.selectedKey);
     this.others.delete(key);
     const news = key !== this.selectedKey;
     this.selectedKey = key;
@@ -181,11 +184,11 @@ export class TreeView {
     for (const [key, row] of this.rows) row.selected = this.isSelected(key);
   }
 
-  private isSeveral(key: string): boolean {
-    return this.rows.get(key)?.item.severally === true;
+  private isMultiSelectable(key: string): boolean {
+    return this.rows.get(key)?.item.multiSelectable === true;
   }
 
-  /** Ctrl+click: one more, or one less. */
+  /** Adds a row to the selection, or removes it, on Ctrl+click. */
   private toggle(key: string): void {
     if (key !== this.selectedKey && !this.others.delete(key)) this.select(key, true);
     else if (key === this.selectedKey && this.others.size > 0) {
@@ -196,47 +199,50 @@ export class TreeView {
     this.showSelection();
   }
 
-  /** Shift+click: all from the selected row to this one. */
+  /** Selects all rows from the selected one to this one, on Shift+click. */
   private extend(key: string): void {
     const [from, to] = [this.selectedKey, key].map((each) => this.lines.findIndex(({ item }) => item.key === each));
     if (from === undefined || to === undefined || from < 0) return;
     this.others.clear();
     for (const { item } of this.lines.slice(Math.min(from, to), Math.max(from, to) + 1)) {
-      if (item.severally === true && item.key !== this.selectedKey) this.others.add(item.key);
+      if (item.multiSelectable === true && item.key !== this.selectedKey) this.others.add(item.key);
     }
     this.showSelection();
   }
 
-  /** Shift and an arrow: the next such row too, which becomes the one with the focus. */
-  private grow(index: number, step: number): void {
+  /** Adds the next row to the selection and focuses it, on Shift and an arrow key. */
+  private extendByKey(index: number, step: number): void {
     let at = index + step;
-    while (this.lines[at] && this.lines[at]?.item.severally !== true) at += step;
+    while (this.lines[at] && this.lines[at]?.item.multiSelectable !== true) at += step;
     const key = this.lines[at]?.item.key;
     if (key === undefined) return;
     this.select(key, true);
     this.rows.get(key)?.element.focus();
   }
 
-  /** Runs a change that takes room from the rows: after the release and its click, if one of them is pressed. */
+  /** Runs a change that reduces the space for rows, after the release of a pressed mouse button and its click. */
   whenReleased(act: () => void): void {
     if (!this.isPressed) act();
     else document.addEventListener("mouseup", () => setTimeout(act), { once: true });
   }
 
-  /** Adding to the selection, and the menu of several rows, must not move the focus: that selects one row alone. */
-  private pressed(event: MouseEvent): void {
+  /**
+   * Keeps the focus in place when a press adds to the selection or opens the menu of several rows: moving it would
+   * select one row only.
+   */
+  private onMouseDown(event: MouseEvent): void {
     this.isPressed = true;
     document.addEventListener("mouseup", () => (this.isPressed = false), { once: true });
     const key = keyOf(event.target);
-    if (key === null || !this.isSeveral(key)) return;
-    if (adds(event) || (event.button === 2 && this.others.size > 0 && this.isSelected(key))) event.preventDefault();
+    if (key === null || !this.isMultiSelectable(key)) return;
+    if (addsToSelection(event) || (event.button === 2 && this.others.size > 0 && this.isSelected(key))) event.preventDefault();
   }
 
-  private clicked(event: MouseEvent): void {
+  private onClick(event: MouseEvent): void {
     const target = event.target as HTMLElement;
     const row = this.rows.get(keyOf(target) ?? "");
     if (!row) return;
-    if (adds(event) && row.item.severally === true && this.selectedKey !== null && this.isSeveral(this.selectedKey)) {
+    if (addsToSelection(event) && row.item.multiSelectable === true && this.selectedKey !== null && this.isMultiSelectable(this.selectedKey)) {
       if (event.shiftKey) this.extend(row.item.key);
       else this.toggle(row.item.key);
       return;
@@ -247,7 +253,7 @@ export class TreeView {
     row.element.scrollIntoView({ block: "nearest" });
   }
 
-  private doubleClicked(event: MouseEvent): void {
+  private onDoubleClick(event: MouseEvent): void {
     const target = event.target as HTMLElement;
     const row = this.rows.get(keyOf(target) ?? "");
     if (!row || !target.closest(".row-name") || target.closest(".twist")) return;
@@ -257,7 +263,7 @@ export class TreeView {
     }
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const index = this.lines.findIndex((line) => line.item.key === this.selectedKey);
     const line = this.lines[index];
     const row = line && this.rows.get(line.item.key);
@@ -265,7 +271,7 @@ export class TreeView {
     switch (event.key) {
       case "ArrowDown":
       case "ArrowUp":
-        if (event.shiftKey) this.grow(index, event.key === "ArrowDown" ? 1 : -1);
+        if (event.shiftKey) this.extendByKey(index, event.key === "ArrowDown" ? 1 : -1);
         else this.focusLine(index + (event.key === "ArrowDown" ? 1 : -1));
         break;
       case "Home":
@@ -307,7 +313,7 @@ export class TreeView {
 }
 
 /** Whether a click adds to the selection. */
-function adds(event: MouseEvent): boolean {
+function addsToSelection(event: MouseEvent): boolean {
   return event.shiftKey || event.ctrlKey || event.metaKey;
 }
 
@@ -315,8 +321,8 @@ function keyOf(target: EventTarget | null): string | null {
   return (target as HTMLElement | null)?.closest<HTMLElement>(".row")?.dataset["key"] ?? null;
 }
 
-/** Puts exactly these elements into `parent`, in order, moving only those that are out of place. */
-function arrange(parent: HTMLElement, elements: readonly HTMLElement[]): void {
+/** Makes these elements the children of `parent`, in order, moving only those that are out of place. */
+function setChildren(parent: HTMLElement, elements: readonly HTMLElement[]): void {
   const wanted = new Set<Element>(elements);
   for (const child of [...parent.children]) if (!wanted.has(child)) child.remove();
   let next = parent.firstElementChild;

@@ -1,6 +1,6 @@
 import { h } from "../dom";
 
-/** A choice from a few values, with a label for screen readers. */
+/** Returns a select element with a label for screen readers. */
 export function choice<T extends string>(
   label: string,
   options: readonly (readonly [T, string])[],
@@ -12,7 +12,7 @@ export function choice<T extends string>(
   return element;
 }
 
-/** A box to tick with its words. */
+/** Returns a tick box with a label; `box` is its input element. */
 export function tickBox(text: string, hint: string, changed: (ticked: boolean) => void): HTMLLabelElement & { box: HTMLInputElement } {
   const box = h("input", { class: "check" });
   box.type = "checkbox";
@@ -20,7 +20,7 @@ export function tickBox(text: string, hint: string, changed: (ticked: boolean) =
   return Object.assign(h("label", { class: "tick", title: hint }, box, text), { box });
 }
 
-/** A field for a text; `typed` is called for every key. */
+/** Returns a text field; `typed` is called on every input. */
 export function textField(label: string, typed: (text: string) => void, className = "field"): HTMLInputElement {
   const element = h("input", { class: className, title: label, aria: { label } });
   element.placeholder = label;
@@ -29,7 +29,7 @@ export function textField(label: string, typed: (text: string) => void, classNam
   return element;
 }
 
-/** A field for a number; an entry that is not a number, or out of bounds, is ignored. */
+/** Returns a number field that ignores invalid numbers and those out of bounds. */
 export function numberField(
   label: string,
   value: number,

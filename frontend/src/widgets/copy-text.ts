@@ -1,4 +1,7 @@
-/** Puts a text on the clipboard; returns whether it worked. Pages over plain HTTP from another machine lack the API. */
+/**
+ * Copies a text to the clipboard and returns whether that succeeded. Pages over plain HTTP from another machine lack
+ * the clipboard API.
+ */
 export async function copyText(text: string): Promise<boolean> {
   const { clipboard } = navigator as { clipboard?: Clipboard };
   if (clipboard) {
@@ -13,7 +16,7 @@ export async function copyText(text: string): Promise<boolean> {
   box.style.opacity = "0";
   document.body.append(box);
   box.select();
-  // The old way is the only one there.
+  // The deprecated function is the only one available there.
   // eslint-disable-next-line @typescript-eslint/no-deprecated
   const done = document.execCommand("copy");
   box.remove();

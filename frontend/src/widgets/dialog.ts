@@ -4,14 +4,14 @@ import { strings } from "../strings";
 
 export interface DialogChoice {
   label: string;
-  /** Runs and closes the dialog, unless it gives false. */
+  /** Called on a click, and then closes the dialog unless it returns false. */
   run?: () => boolean | undefined;
-  /** Enter does this one. */
+  /** Whether Enter chooses this one. */
   main?: boolean;
   danger?: boolean;
 }
 
-/** A question or a form over the page. The browser keeps the keyboard in it, and gives it back when it closes. */
+/** A question or form over the page. The browser keeps the focus within it, and restores the focus when it closes. */
 export class Dialog {
   readonly element: HTMLDialogElement;
   private readonly mainButton: HTMLButtonElement | null;
@@ -30,7 +30,7 @@ export class Dialog {
     });
     this.mainButton = buttons.find(({ choice }) => choice.main === true)?.element ?? null;
     const heading = h("h2", {}, title);
-    heading.id = `dialog-${String(++opened)}`;
+    heading.id = `dialog-${String(++dialogCount)}`;
     const close = button(strings.close, () => this.close(), "tool bare", icon("close"));
     this.element = h(
       "dialog",
@@ -40,7 +40,7 @@ export class Dialog {
       h("footer", {}, ...buttons.map(({ element }) => element)),
     );
     this.element.addEventListener("close", () => this.element.remove());
-    // The page's own keys do not apply while a dialog is open.
+    // The page's own keys must not act while a dialog is open.
     this.element.addEventListener("keydown", (event) => {
       event.stopPropagation();
       if (event.key === "Tab") this.keepFocus(event);
@@ -62,7 +62,7 @@ export class Dialog {
     this.element.close();
   }
 
-  /** Moves the focus from the last element to the first on Tab: the browser would continue with its own buttons. */
+  /** Moves the focus from the last element to the first on Tab; the browser would continue with its own buttons. */
   private keepFocus(event: KeyboardEvent): void {
     const all = this.element.querySelectorAll<HTMLElement>("button, input, select, textarea, [tabindex]");
     const stops = [...all].filter((each) => each.tabIndex >= 0 && !each.matches(":disabled") && each.checkVisibility());
@@ -73,30 +73,30 @@ export class Dialog {
     (event.shiftKey ? last : first)?.focus();
   }
 
-  /** Whether the main choice can be made. */
+  /** Whether the main choice is enabled. */
   set ready(ready: boolean) {
     if (this.mainButton) this.mainButton.disabled = !ready;
   }
 }
 
-let opened = 0;
+let dialogCount = 0;
 
-/** Shows a notice to the user; `lines` are its subjects, one below the other. */
-export function tell(title: string, text: string, lines: readonly string[] = []): void {
+/** Shows a notice to the user; `lines` lists its subjects below the text. */
+export function showNotice(title: string, text: string, lines: readonly string[] = []): void {
   const list = h("ul", { class: "dialog-lines" }, ...lines.map((line) => h("li", {}, line)));
   const content = lines.length > 0 ? [h("p", {}, text), list] : [h("p", {}, text)];
   new Dialog(title, content, [{ label: strings.shell.ok, main: true }]).open();
 }
 
 /** Asks for a name. */
-export function askName(title: string, label: string, value: string, take: (name: string) => void): void {
+export function askName(title: string, label: string, value: string, rename: (name: string) => void): void {
   const field = h("input", { class: "field wide", aria: { label } });
   field.value = value;
   field.maxLength = 200;
   const accept = (): boolean => {
     const name = field.value.trim();
     if (name === "") return false;
-    if (name !== value) take(name);
+    if (name !== value) rename(name);
     return true;
   };
   const dialog = new Dialog(

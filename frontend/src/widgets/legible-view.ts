@@ -1,4 +1,4 @@
-/** The view of an image in its window: the place of its corner, px, and its scale. */
+/** A view of an image in a window: the position of the image's corner, px, and its scale. */
 export interface ImageView {
   readonly x: number;
   readonly y: number;
@@ -7,18 +7,19 @@ export interface ImageView {
 
 type Size = readonly [width: number, height: number];
 
-/** Texts are at least as large on the screen, px. */
-const LEAST_TEXT = 10;
+/** The minimum size of texts on the screen, px. */
+const MIN_TEXT = 10;
 
 /**
- * All of an image if its texts are legible then; otherwise the part around a point, as large as they need it.
+ * Returns the view of a whole image if its texts are legible; otherwise of the part around a point, at the scale that
+ * makes them legible.
  *
- * @param text size of the image's smallest text, px.
- * @param point of the image, px: moves to the middle, as far as the image allows.
+ * @param text - the size of the image's smallest text, px.
+ * @param point - a point of the image, px, which is centred as far as the image's edges permit.
  */
 export function legibleView(image: Size, window: Size, text: number, point: readonly [number, number], margin = 16): ImageView {
   const fits = Math.min((window[0] - 2 * margin) / image[0], (window[1] - 2 * margin) / image[1]);
-  const scale = Math.min(1, Math.max(LEAST_TEXT / text, fits));
+  const scale = Math.min(1, Math.max(MIN_TEXT / text, fits));
   const place = (axis: 0 | 1): number => {
     const [size, room] = [image[axis] * scale, window[axis]];
     if (size <= room - 2 * margin) return (room - size) / 2;

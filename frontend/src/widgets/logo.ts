@@ -1,7 +1,7 @@
 const SVG = "http://www.w3.org/2000/svg";
 
-/** Two links and the joint between them. */
-export function Logo(): SVGSVGElement {
+/** Returns the logo: two links and the joint between them. */
+export function logo(): SVGSVGElement {
   const svg = document.createElementNS(SVG, "svg");
   svg.setAttribute("viewBox", "0 0 20 20");
   svg.setAttribute("class", "logo");

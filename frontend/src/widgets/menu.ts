@@ -5,12 +5,12 @@ export interface MenuEntry {
   label: string;
   checked?: boolean;
   icon?: IconName;
-  /** The keys that do the same, as shown to the user. */
+  /** The keys for the same command, as shown to the user. */
   keys?: string;
   disabled?: boolean;
-  /** The full text of a shortened label. */
+  /** The tooltip, such as the full text of a shortened label. */
   hint?: string;
-  /** A line above it. */
+  /** Whether there is a line above the entry. */
   separate?: boolean;
   run: () => void;
 }
@@ -21,7 +21,7 @@ export function openMenu(anchor: HTMLElement, entries: readonly MenuEntry[]): vo
   showMenu(entries, { x: box.left, y: box.bottom + 4, above: box.top - 4 }, anchor);
 }
 
-/** Opens a menu where the user requested it; the focus returns to `origin` when it closes. */
+/** Opens a menu at a position; the focus returns to `origin` when it closes. */
 export function openMenuAt(x: number, y: number, origin: HTMLElement | null, entries: readonly MenuEntry[]): void {
   showMenu(entries, { x, y, above: y }, origin);
 }
@@ -29,7 +29,7 @@ export function openMenuAt(x: number, y: number, origin: HTMLElement | null, ent
 interface Place {
   x: number;
   y: number;
-  /** The end of the menu if there is no room below. */
+  /** The lower end of the menu if there is no space below. */
   above: number;
 }
 
@@ -48,7 +48,7 @@ function showMenu(entries: readonly MenuEntry[], place: Place, origin: HTMLEleme
   const enabled = items.filter((item) => item.getAttribute("aria-disabled") !== "true");
   menu.addEventListener("keydown", (event) => {
     if (event.key === "Escape" || event.key === "Tab") close(true);
-    else if (!moveFocus(enabled, event.key)) return;
+    else if (!handleKey(enabled, event.key)) return;
     event.preventDefault();
     event.stopPropagation();
   });
@@ -57,7 +57,7 @@ function showMenu(entries: readonly MenuEntry[], place: Place, origin: HTMLEleme
   });
   menu.addEventListener("contextmenu", (event) => event.preventDefault());
   document.addEventListener("pointerdown", outside, true);
-  // In a dialog only its own elements are reachable.
+  // In a modal dialog, only its own elements are reachable.
   (origin?.closest("dialog") ?? document.body).append(menu);
   origin?.setAttribute("aria-expanded", "true");
   const below = window.innerHeight - place.y;
@@ -87,8 +87,11 @@ function menuItem(entry: MenuEntry, close: () => void): HTMLLIElement {
   return item;
 }
 
-/** Handles the keys of a menu; returns whether this was one. A letter moves to the next entry that begins with it. */
-function moveFocus(items: readonly HTMLLIElement[], key: string): boolean {
+/**
+ * Handles a key of a menu and returns whether there was a command for it. A letter moves to the next entry that begins
+ * with it.
+ */
+function handleKey(items: readonly HTMLLIElement[], key: string): boolean {
   const index = items.indexOf(document.activeElement as HTMLLIElement);
   if (key === "ArrowDown") items[(index + 1) % items.length]?.focus();
   else if (key === "ArrowUp") items.at(index - 1)?.focus();

@@ -1,16 +1,16 @@
-/** Gives the user a text as a file. */
+/** Saves a text as a file on the user's machine. */
 export function saveText(name: string, text: string, type: string): void {
   saveBlob(name, new Blob([text], { type }));
 }
 
-/** Gives the user an image or a video as a file. */
+/** Saves an image or a video as a file on the user's machine. */
 export function saveBlob(name: string, blob: Blob): void {
   const url = URL.createObjectURL(blob);
   saveFrom(name, url);
   URL.revokeObjectURL(url);
 }
 
-/** Has the browser fetch a file of the server and save it. */
+/** Downloads a file of the server and saves it on the user's machine. */
 export function saveFrom(name: string, url: string): void {
   const link = document.createElement("a");
   link.href = url;

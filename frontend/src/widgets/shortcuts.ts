@@ -1,4 +1,4 @@
-/** A key with its modifiers: `mod` is Ctrl, on a Mac Command. */
+/** A key with its modifiers: `mod` is Ctrl, or Command on a Mac. */
 export interface Shortcut {
   key: string;
   mod?: boolean;
@@ -9,25 +9,25 @@ export interface Shortcut {
 const agent = (globalThis as { navigator?: Navigator }).navigator?.userAgent ?? "";
 const MAC = /Macintosh|iPhone|iPad/.test(agent);
 
-/** Whether an event is a shortcut. */
+/** Whether an event matches a shortcut. */
 export function matches(event: KeyboardEvent, { key, mod = false, shift = false, alt = false }: Shortcut): boolean {
   const held = MAC ? event.metaKey && !event.ctrlKey : event.ctrlKey && !event.metaKey;
   const free = !event.ctrlKey && !event.metaKey;
-  // With Alt some keyboards give another letter: then the place of the key counts.
+  // With Alt, some keyboards produce another letter: compare the position of the key.
   const same = event.key.toLowerCase() === key.toLowerCase() || (alt && event.code === `Key${key.toUpperCase()}`);
   return same && (mod ? held : free) && event.shiftKey === shift && event.altKey === alt;
 }
 
 const NAMES: Readonly<Record<string, string>> = { Delete: "Del", Insert: "Ins", ArrowUp: "↑", ArrowDown: "↓" };
 
-/** The keys as they are written on the keyboard: `Ctrl+Shift+S`. */
+/** Returns the keys as labelled on the keyboard: `Ctrl+Shift+S`. */
 export function keyText({ key, mod = false, shift = false, alt = false }: Shortcut): string {
   const name = NAMES[key] ?? key.toUpperCase();
   if (MAC) return `${alt ? "⌥" : ""}${shift ? "⇧" : ""}${mod ? "⌘" : ""}${name}`;
   return [...(mod ? ["Ctrl"] : []), ...(alt ? ["Alt"] : []), ...(shift ? ["Shift"] : []), name].join("+");
 }
 
-/** RViz's keys, or others where a browser has its own use for them. */
+/** RViz's keys, or others where the browser uses these itself. */
 export const SHORTCUTS = {
   open: { key: "o", mod: true },
   save: { key: "s", mod: true },

@@ -2,7 +2,7 @@ import { button, h } from "../dom";
 import type { AngleUnit, AngleUnits } from "../state/angle-unit";
 import { strings } from "../strings";
 
-/** Radians or degrees, for all panels that show angles. */
+/** The switch between radians and degrees for all panels that show angles. */
 export class UnitSwitch {
   readonly element = h("div", {
     class: "segmented",

@@ -1,13 +1,13 @@
 import { coalesced, h } from "../dom";
 
-/** Rows beyond those in sight that are kept ready. */
-const SPARE = 8;
+/** The number of rows kept ready beyond the visible ones. */
+const OVERSCAN = 8;
 
-/** A list of any length of which only the rows in sight are in the page; all rows are of one height. */
+/** A list of any length in which only the visible rows are elements; all rows have the same height. */
 export class VirtualList<T> {
   readonly element = h("div", { class: "virtual-list", tabIndex: 0 });
-  /** Whether the end stays in sight when rows are added. */
-  following = true;
+  /** Whether the list scrolls to the end when rows are added. */
+  isFollowing = true;
   private readonly rows = h("div", { class: "virtual-rows" });
   private readonly space = h("div", { class: "virtual-space" }, this.rows);
   private items: readonly T[] = [];
@@ -21,7 +21,7 @@ export class VirtualList<T> {
     private readonly followingChanged: () => void,
   ) {
     this.element.append(this.space);
-    this.element.addEventListener("scroll", () => this.scrolled());
+    this.element.addEventListener("scroll", () => this.onScroll());
     new ResizeObserver(() => this.draw()).observe(this.element);
   }
 
@@ -31,18 +31,18 @@ export class VirtualList<T> {
     this.draw();
   }
 
-  /** Goes to the end and stays there. */
+  /** Scrolls to the end and follows it. */
   follow(): void {
-    this.following = true;
+    this.isFollowing = true;
     this.followingChanged();
     this.draw();
   }
 
-  private scrolled(): void {
+  private onScroll(): void {
     const { scrollTop, clientHeight, scrollHeight } = this.element;
     const atEnd = scrollTop + clientHeight >= scrollHeight - this.rowHeight;
-    if (atEnd !== this.following) {
-      this.following = atEnd;
+    if (atEnd !== this.isFollowing) {
+      this.isFollowing = atEnd;
       this.followingChanged();
     }
     this.fill();
@@ -54,9 +54,9 @@ export class VirtualList<T> {
     if (height === 0) return;
     const whole = `${items.length * rowHeight}px`;
     if (this.space.style.height !== whole) this.space.style.height = whole;
-    if (this.following) element.scrollTop = items.length * rowHeight;
-    const first = Math.max(0, Math.floor(element.scrollTop / rowHeight) - SPARE);
-    const last = Math.min(items.length, Math.ceil((element.scrollTop + height) / rowHeight) + SPARE);
+    if (this.isFollowing) element.scrollTop = items.length * rowHeight;
+    const first = Math.max(0, Math.floor(element.scrollTop / rowHeight) - OVERSCAN);
+    const last = Math.min(items.length, Math.ceil((element.scrollTop + height) / rowHeight) + OVERSCAN);
     if (first === this.first && last === this.last) return;
     [this.first, this.last] = [first, last];
     this.rows.style.transform = `translateY(${first * rowHeight}px)`;

@@ -1,20 +1,20 @@
 import { h } from "../dom";
 
-/** Rows drawn beyond both ends of the visible part, so that scrolling shows no gaps. */
+/** The number of rows drawn beyond both ends of the visible part, so that scrolling shows no gaps. */
 const OVERSCAN = 12;
 
-/** A list of any length; only the rows in sight are elements. All rows have one height. */
+/** A list of any length in which only the visible rows are elements; all rows have the same height. */
 export class VirtualRows {
   readonly element: HTMLElement;
-  /** Holds the rows; as high as all of them. */
+  /** The element that contains the rows, as high as all of them. */
   readonly body = h("div", { class: "virtual-body" });
   private count = 0;
   private first = 0;
   private rows: HTMLElement[] = [];
 
   /**
-   * @param rowHeight px.
-   * @param render makes the row of an index.
+   * @param rowHeight - px.
+   * @param render - returns the row of an index.
    */
   constructor(
     className: string,
@@ -26,19 +26,19 @@ export class VirtualRows {
     new ResizeObserver(() => this.draw(false)).observe(this.element);
   }
 
-  /** The rows are others, or look other than before. */
+  /** Redraws after rows were added, removed or changed. */
   refresh(count = this.count): void {
     this.count = count;
     this.body.style.height = `${count * this.rowHeight}px`;
     this.draw(true);
   }
 
-  /** The row of an index, if it is drawn now. */
+  /** Returns the row of an index, if it is drawn now. */
   rowAt(index: number): HTMLElement | undefined {
     return this.rows[index - this.first];
   }
 
-  /** Scrolls a row into sight, if it is not; one far away moves to a third of the height. */
+  /** Scrolls a row into view, if it is not; to a third of the height. */
   reveal(index: number): void {
     const { element, rowHeight } = this;
     const top = index * rowHeight;
@@ -47,12 +47,12 @@ export class VirtualRows {
     this.draw(false);
   }
 
-  private draw(anew: boolean): void {
+  private draw(isStale: boolean): void {
     const { scrollTop, clientHeight } = this.element;
     const first = Math.max(0, Math.floor(scrollTop / this.rowHeight) - OVERSCAN);
     const end = Math.min(this.count, Math.ceil((scrollTop + clientHeight) / this.rowHeight) + OVERSCAN);
-    if (!anew && first === this.first && end === this.first + this.rows.length) return;
-    const old = anew ? [] : this.rows;
+    if (!isStale && first === this.first && end === this.first + this.rows.length) return;
+    const old = isStale ? [] : this.rows;
     const before = this.first;
     this.rows = Array.from({ length: Math.max(0, end - first) }, (_, i) => old[first + i - before] ?? this.make(first + i));
     this.first = first;

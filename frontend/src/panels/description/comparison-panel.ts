@@ -1,7 +1,7 @@
 import { button, coalesced, h } from "../../dom";
 import { icon, type IconName } from "../../icons";
 import type { ComparedItem, ComparedPlace } from "../../protocol";
-import { grouped, MARK_COLORS, marksIn, type DifferenceGroup } from "../../state/comparison";
+import { groupDifferences, MARK_COLORS, marksIn, type DifferenceGroup } from "../../state/comparison";
 import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -12,7 +12,7 @@ import { shortPlace } from "../place";
 const KIND_ICONS = { added: "plus", removed: "minus", renamed: "rename", changed: "options" } as const satisfies Record<string, IconName>;
 const SUBJECT_ICONS = { robot: "diagram", link: "cube", joint: "joints", extension: "code" } as const satisfies Record<string, IconName>;
 
-/** The differences of two descriptions, and which of the two are drawn. */
+/** The differences of two descriptions, and switches for drawing each of the two. */
 export class ComparisonPanel implements Panel {
   readonly id = "comparison";
   readonly icon = "compare";
@@ -25,7 +25,7 @@ export class ComparisonPanel implements Panel {
   private readonly count = h("p", { class: "comparison-count", role: "status" });
   private readonly list = h("div", { class: "comparison-list", role: "list", aria: { label: strings.comparison.list } });
 
-  /** `look`: has the camera look at what is selected. */
+  /** `look` points the camera at the selection. */
   constructor(
     private readonly session: Session,
     private readonly look: () => void,
@@ -95,7 +95,7 @@ export class ComparisonPanel implements Panel {
     this.element.classList.toggle("same", items.length === 0);
     this.count.textContent = items.length === 0 ? words.same : words.count(items.length);
     const at = this.list.scrollTop;
-    this.list.replaceChildren(...grouped(items).map((group) => this.group(group)));
+    this.list.replaceChildren(...groupDifferences(items).map((group) => this.group(group)));
     this.list.scrollTop = at;
     this.showSwitches();
     this.showFocus();
@@ -114,7 +114,7 @@ export class ComparisonPanel implements Panel {
     this.marks.box.checked = this.session.comparison.marks;
   }
 
-  /** Marks the group of the selection. */
+  /** Marks the group of the selected element. */
   private showFocus(): void {
     const { current } = this.session.focus;
     const key = current ? keyOf(current) : "";
@@ -170,7 +170,7 @@ export class ComparisonPanel implements Panel {
     return h("div", { class: "difference" }, line, places.length > 0 ? h("div", { class: "difference-places" }, ...places) : null);
   }
 
-  /** The place in the text: a link into the Source panel where that can show it. */
+  /** Returns the place in the text: a link into the Source panel if that can show it. */
   private place(place: ComparedPlace | null, side: "old" | "new"): HTMLElement | null {
     if (!place) return null;
     const { text, file, line } = place;
@@ -178,7 +178,7 @@ export class ComparisonPanel implements Panel {
     const display = this.session.comparison.compared?.[side].display ?? "";
     if (file === "" || display === "") return h("span", { class: "place", title: text }, ...words);
     const name = text.replace(/(:\d+)+$/, "");
-    return button(text, () => this.session.description.placeAsked.emit({ file, line, display, name }), "place", ...words);
+    return button(text, () => this.session.description.placeRequested.emit({ file, line, display, name }), "place", ...words);
   }
 }
 

@@ -1,14 +1,14 @@
 import { button, coalesced, h } from "../../dom";
 import { icon, LEVEL_ICONS } from "../../icons";
 import type { DiagnosticItem, DiagnosticNote, StatusRow } from "../../protocol";
-import { troublesOf, type DisplayState } from "../../state/displays";
+import { problemsOf, type DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { troubleText } from "../displays/display-items";
 import type { Panel } from "../panel";
 import { placeText, shortPath } from "../place";
 
-/** The findings on the description, with the lines they point to, and why displays show nothing. */
+/** The findings on the description with the lines they point to, and the reasons why displays show nothing. */
 export class DiagnosticsPanel implements Panel {
   readonly id = "diagnostics";
   readonly icon = "warn";
@@ -16,7 +16,7 @@ export class DiagnosticsPanel implements Panel {
   private readonly findings = h("div", { aria: { live: "polite" } });
   private readonly displays = h("div");
   private readonly none = h("p", { class: "empty" }, icon("check", "level-ok"), strings.diagnostics.none);
-  private cards: ReadonlyMap<string, TroubleCard> = new Map<string, TroubleCard>();
+  private cards: ReadonlyMap<string, ProblemCard> = new Map<string, ProblemCard>();
 
   constructor(private readonly session: Session) {
     this.element.append(this.none, this.findings, this.displays);
@@ -31,47 +31,47 @@ export class DiagnosticsPanel implements Panel {
   }
 
   private showFindings(): void {
-    const show = (file: string, line: number): void => this.session.description.placeAsked.emit({ file, line });
+    const show = (file: string, line: number): void => this.session.description.placeRequested.emit({ file, line });
     this.findings.replaceChildren(...this.session.diagnostics.map((item) => card(item, show)));
     this.showNone();
   }
 
   private showDisplays(): void {
     const { displays } = this.session;
-    const all = troublesOf(displays.globalStatus);
-    const next = new Map<string, TroubleCard>();
+    const all = problemsOf(displays.globalStatus);
+    const next = new Map<string, ProblemCard>();
     const show = (id: string, name: string, troubles: readonly StatusRow[], title: () => HTMLElement): void => {
       if (troubles.length === 0) return;
-      const card = this.cards.get(id) ?? new TroubleCard(title());
+      const card = this.cards.get(id) ?? new ProblemCard(title());
       card.show(name, troubles);
       next.set(id, card);
     };
     show("#status", strings.tree.globalStatus, all, () => h("span"));
-    for (const each of displays.displays) show(each.id, each.name, each.troubles, () => this.rowButton(each));
+    for (const display of displays.displays) show(display.id, display.name, display.problems, () => this.rowButton(display));
     this.cards = next;
     const elements = [...next.values()].map((each) => each.element);
     const before = [...this.displays.children];
-    // What is there stays the same element, whatever it says: it may be about to be clicked.
-    if (elements.length !== before.length || elements.some((each, index) => each !== before[index])) this.displays.replaceChildren(...elements);
+    // Keep the element of a display whatever its text: the user may be about to click it.
+    if (elements.length !== before.length || elements.some((element, index) => element !== before[index])) this.displays.replaceChildren(...elements);
     this.showNone();
   }
 
   private showNone(): void {
-    this.none.hidden = !this.session.displays.known || this.findings.childElementCount + this.displays.childElementCount > 0;
+    this.none.hidden = !this.session.displays.isKnown || this.findings.childElementCount + this.displays.childElementCount > 0;
   }
 
   private rowButton(display: DisplayState): HTMLElement {
     const { displays } = this.session;
-    return button(strings.diagnostics.showDisplay, () => displays.rowAsked.emit(display), "text-link", display.name);
+    return button(strings.diagnostics.showDisplay, () => displays.rowRequested.emit(display), "text-link", display.name);
   }
 }
 
-/** The problems of a display. */
-class TroubleCard {
+/** The card with the problems of a display. */
+class ProblemCard {
   readonly element = h("article");
   private readonly sign = h("span");
   private readonly list = h("ul");
-  private shown = "";
+  private shownKey = "";
 
   constructor(private readonly title: HTMLElement) {
     this.element.append(h("header", {}, this.sign, h("strong", {}, this.title)), this.list);
@@ -79,8 +79,8 @@ class TroubleCard {
 
   show(name: string, troubles: readonly StatusRow[]): void {
     const key = JSON.stringify([name, troubles]);
-    if (key === this.shown) return;
-    this.shown = key;
+    if (key === this.shownKey) return;
+    this.shownKey = key;
     const level = troubles[0]?.level ?? "ok";
     this.element.className = `diagnostic ${level === "warn" ? "warning" : level}`;
     this.sign.replaceChildren(icon(LEVEL_ICONS[level], `level-${level}`));
@@ -89,9 +89,9 @@ class TroubleCard {
   }
 }
 
-type Show = (file: string, line: number) => void;
+type ShowPlace = (file: string, line: number) => void;
 
-function card(item: DiagnosticItem, show: Show): HTMLElement {
+function card(item: DiagnosticItem, show: ShowPlace): HTMLElement {
   const notes = item.notes.map((note) => {
     return h(
       "li",
@@ -120,14 +120,14 @@ function card(item: DiagnosticItem, show: Show): HTMLElement {
   );
 }
 
-/** A place that is shown in the Source panel when it is clicked. */
-function placeButton({ file, line, column }: Pick<DiagnosticNote, "file" | "line" | "column">, show: Show): HTMLElement | null {
+/** Returns a button that shows a place in the Source panel. */
+function placeButton({ file, line, column }: Pick<DiagnosticNote, "file" | "line" | "column">, show: ShowPlace): HTMLElement | null {
   if (file === null) return null;
   const text = placeText(shortPath(file), line, column);
   return button(placeText(file, line, column), () => show(file, line ?? 1), "place", icon("file"), text);
 }
 
-/** The source line with the part in question marked. */
+/** Returns the source line of a finding, with the part in question marked. */
 function excerpt(item: DiagnosticItem): HTMLElement | null {
   if (item.excerpt === "") return null;
   const text = item.excerpt.trimStart();

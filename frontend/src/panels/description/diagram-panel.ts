@@ -2,22 +2,22 @@ import { button, coalesced, h } from "../../dom";
 import { icon } from "../../icons";
 import type { DescriptionModel, ElementName } from "../../state/description-model";
 import { layOut, type Diagram, type DiagramNode } from "../../state/diagram-layout";
-import { same } from "../../state/element-focus";
+import { isSameElement } from "../../state/element-focus";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { PanZoom } from "../../widgets/pan-zoom";
-import { holdWhileSeen } from "../../widgets/when-seen";
+import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { currentModel } from "./current-model";
 
 const SVG = "http://www.w3.org/2000/svg";
 const FONT = "12px Inter, 'Segoe UI', 'Noto Sans', sans-serif";
 const LINE_PX = 13;
-/** Of the smallest texts, the origins. */
+/** Font size of the smallest texts, the origins. */
 const TEXT_PX = 11;
 const FLASH_MS = 1600;
 
-/** The structure of the robot, as urdf_to_graphviz draws it. */
+/** The structure of the robot, drawn as by urdf_to_graphviz. */
 export class DiagramPanel implements Panel {
   readonly id = "diagram";
   readonly icon = "diagram";
@@ -57,15 +57,15 @@ export class DiagramPanel implements Panel {
     this.element = h("div", { class: "panel" }, bar, this.empty, this.canvas);
     const { description, focus } = session;
     const update = coalesced(() => this.update());
-    holdWhileSeen(this.element, () => description.hold(), update);
+    holdWhileVisible(this.element, () => description.hold(), update);
     description.arrived.on(update);
     session.robotChanged.on(update);
-    focus.changed.on(coalesced(() => this.focused()));
+    focus.changed.on(coalesced(() => this.showFocus()));
     description.edited.on(({ links, joints }) => this.flash(links, joints));
     this.update();
   }
 
-  /** For tests. */
+  /** Returns the counts and sizes that tests check. */
   inspect(): object {
     const { nodes = [], width = 0, height = 0 } = this.diagram ?? {};
     return {
@@ -90,7 +90,7 @@ export class DiagramPanel implements Panel {
     if (this.isPlaced || this.canvas.clientWidth === 0) return;
     this.isPlaced = true;
     this.place();
-    this.focused();
+    this.showFocus();
   }
 
   private draw(model: DescriptionModel): void {
@@ -125,33 +125,33 @@ export class DiagramPanel implements Panel {
         : svg("ellipse", { rx: width / 2, ry: height / 2 });
     group.append(shape, label(element.name, 0, "name"));
     group.addEventListener("click", () => {
-      if (!this.panZoom.dragged) this.session.focus.select(element);
+      if (!this.panZoom.wasDragged) this.session.focus.select(element);
     });
     group.addEventListener("pointerenter", () => this.session.focus.setHovered(element));
     group.addEventListener("pointerleave", () => this.session.focus.setHovered(null));
     return group;
   }
 
-  private focused(): void {
+  private showFocus(): void {
     const { current } = this.session.focus;
     for (const old of this.drawing.querySelectorAll(".node.selected")) old.classList.remove("selected");
     if (!current) return;
     this.nodes.get(key(current))?.classList.add("selected");
-    const node = this.diagram?.nodes.find(({ element }) => same(element, current));
+    const node = this.diagram?.nodes.find(({ element }) => isSameElement(element, current));
     if (node && !this.canvas.matches(":hover")) this.panZoom.reveal(node.x, node.y);
   }
 
   private fit(): void {
-    if (this.diagram && this.canvas.clientWidth > 0) this.panZoom.show(this.diagram.width, this.diagram.height);
+    if (this.diagram && this.canvas.clientWidth > 0) this.panZoom.fitImage(this.diagram.width, this.diagram.height);
   }
 
-  /** Brings the selected element, or else the root, into sight at a legible size. */
+  /** Scrolls to the selected element, or else the root, at a legible size. */
   private place(): void {
     const { diagram } = this;
     if (!diagram || this.canvas.clientWidth === 0) return;
     const { current } = this.session.focus;
-    const node = (current && diagram.nodes.find(({ element }) => same(element, current))) ?? diagram.nodes.find(({ above }) => !above);
-    this.panZoom.open(diagram.width, diagram.height, TEXT_PX, [node?.x ?? 0, node?.y ?? 0]);
+    const node = (current && diagram.nodes.find(({ element }) => isSameElement(element, current))) ?? diagram.nodes.find(({ above }) => !above);
+    this.panZoom.showLegibly(diagram.width, diagram.height, TEXT_PX, [node?.x ?? 0, node?.y ?? 0]);
   }
 
   private toggleOrigins(pressed: HTMLElement): void {
@@ -160,11 +160,11 @@ export class DiagramPanel implements Panel {
     pressed.setAttribute("aria-pressed", String(this.origins));
     if (this.model) this.draw(this.model);
     this.place();
-    this.focused();
+    this.showFocus();
   }
 
   private flash(links: readonly string[], joints: readonly string[]): void {
-    // The new image comes with the answer to the question that the same change made.
+    // Wait for the new diagram, which arrives after the request that the same change caused.
     setTimeout(() => {
       const names = [...links.map((name) => `link ${name}`), ...joints.map((name) => `joint ${name}`)];
       for (const node of names.flatMap((name) => this.nodes.get(name) ?? [])) {
@@ -179,7 +179,7 @@ function key({ kind, name }: ElementName): string {
   return `${kind} ${name}`;
 }
 
-/** The path from the lower end of one node to the upper end of the other. */
+/** Returns the path from the lower end of one node to the upper end of another. */
 function edge(from: DiagramNode, to: DiagramNode): string {
   const [top, bottom] = [from.y + from.height / 2, to.y - to.height / 2];
   const middle = Math.min(14, (bottom - top) / 2);
@@ -205,7 +205,7 @@ function svg<K extends keyof SVGElementTagNameMap>(
   return element;
 }
 
-/** Widths of texts in the diagram's font, each measured once. */
+/** Returns a function that measures texts in the diagram's font, each text once. */
 function textMeasure(): (text: string) => number {
   const context = document.createElement("canvas").getContext("2d");
   const known = new Map<string, number>();

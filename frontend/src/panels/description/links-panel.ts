@@ -1,12 +1,12 @@
 import { button, coalesced, h } from "../../dom";
 import { icon } from "../../icons";
 import type { DescriptionModel, ElementName } from "../../state/description-model";
-import { same } from "../../state/element-focus";
-import { flattened, LinkTreeState, type TreeRow } from "../../state/link-tree";
+import { isSameElement } from "../../state/element-focus";
+import { visibleRows, LinkTreeState, type TreeRow } from "../../state/link-tree";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { VirtualRows } from "../../widgets/virtual-rows";
-import { holdWhileSeen } from "../../widgets/when-seen";
+import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { currentModel } from "./current-model";
 
@@ -29,7 +29,7 @@ export class LinksPanel implements Panel {
 
   constructor(private readonly session: Session) {
     const words = strings.description;
-    this.tree.keep(session.kept);
+    this.tree.preserveIn(session.memory);
     this.search.type = "search";
     this.search.placeholder = words.search;
     this.search.setAttribute("aria-label", words.search);
@@ -44,16 +44,16 @@ export class LinksPanel implements Panel {
     );
     this.rows.element.setAttribute("role", "tree");
     this.rows.element.setAttribute("aria-label", words.linksLabel);
-    this.rows.element.addEventListener("keydown", (event) => this.keyed(event));
+    this.rows.element.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.rows.element.addEventListener("pointerleave", () => session.focus.setHovered(null));
     this.element = h("div", { class: "panel" }, bar, this.search, this.empty, this.rows.element);
     const update = coalesced(() => this.update());
     const { description, focus } = session;
-    holdWhileSeen(this.element, () => description.hold(), update);
+    holdWhileVisible(this.element, () => description.hold(), update);
     description.arrived.on(update);
     description.findingsArrived.on(update);
     session.robotChanged.on(update);
-    focus.changed.on(coalesced(() => this.focused()));
+    focus.changed.on(coalesced(() => this.showFocus()));
     description.edited.on(({ links, joints }) => this.flash([...links, ...joints]));
     this.update();
   }
@@ -66,16 +66,16 @@ export class LinksPanel implements Panel {
     if (!model) return;
     const { links, joints } = model;
     this.count.textContent = strings.description.count(links.size, joints.size);
-    this.shown = flattened(model, this.tree, this.search.value);
+    this.shown = visibleRows(model, this.tree, this.search.value);
     const deepest = this.shown.reduce((most, { depth }) => Math.max(most, depth), 1);
     this.rows.element.style.setProperty("--deepest", String(deepest));
     this.rows.refresh(this.shown.length);
   }
 
-  /** Another element is the one: its row is opened and shown. */
-  private focused(): void {
+  /** Unfolds and reveals the row of the newly selected element. */
+  private showFocus(): void {
     const link = this.focusedLink();
-    if (this.model && link !== undefined && this.search.value === "") this.tree.open(this.model, link);
+    if (this.model && link !== undefined && this.search.value === "") this.tree.reveal(this.model, link);
     this.update();
     const index = this.shown.findIndex((row) => row.link.name === link);
     if (index >= 0) this.rows.reveal(index);
@@ -94,7 +94,7 @@ export class LinksPanel implements Panel {
     const focus = this.session.focus.current;
     const name = (kind: "link" | "joint", of: string): ElementName => ({ display: model.display, kind, name: of });
     const self = name("link", link.name);
-    const twist = h("span", { class: row.inner ? "twist" : "twist leaf" }, icon("chevron"));
+    const twist = h("span", { class: row.hasChildren ? "twist" : "twist leaf" }, icon("chevron"));
     twist.addEventListener("click", (event) => {
       event.stopPropagation();
       this.toggle(index);
@@ -106,15 +106,15 @@ export class LinksPanel implements Panel {
       twist,
       icon("cube"),
       h("span", { class: "link-name", title: link.name }, link.name),
-      findings.length > 0 ? badge(findings.map((each) => each.message)) : null,
+      findings.length > 0 ? badge(findings.map((finding) => finding.message)) : null,
       h("span", { class: "spacer" }),
       joint ? this.jointName(name("joint", joint.name), joint.kind) : null,
     );
     element.style.setProperty("--depth", String(depth));
     element.id = `link-row-${index}`;
     element.setAttribute("aria-level", String(depth + 1));
-    element.setAttribute("aria-selected", String(same(focus, self)));
-    if (row.inner) element.setAttribute("aria-expanded", String(!folded));
+    element.setAttribute("aria-selected", String(isSameElement(focus, self)));
+    if (row.hasChildren) element.setAttribute("aria-expanded", String(!folded));
     element.classList.toggle("selected", link.name === this.focusedLink());
     element.classList.toggle("flash", this.flashing.has(link.name) || (joint !== null && this.flashing.has(joint.name)));
     element.addEventListener("click", () => this.select(index, self));
@@ -129,7 +129,7 @@ export class LinksPanel implements Panel {
       icon("joints"),
       h("span", {}, joint.name),
     );
-    element.classList.toggle("selected", same(this.session.focus.current, joint));
+    element.classList.toggle("selected", isSameElement(this.session.focus.current, joint));
     element.addEventListener("click", (event) => {
       event.stopPropagation();
       this.session.focus.select(joint);
@@ -145,33 +145,33 @@ export class LinksPanel implements Panel {
 
   private toggle(index: number): void {
     const row = this.shown[index];
-    if (row?.inner) this.tree.toggle(row.link.name);
+    if (row?.hasChildren) this.tree.toggle(row.link.name);
     this.update();
   }
 
   private fold(all: boolean): void {
-    if (this.model) this.tree.fold(this.model, all);
+    if (this.model) this.tree.foldAll(this.model, all);
     this.update();
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const link = this.focusedLink();
     const index = this.shown.findIndex((row) => row.link.name === link);
     const row = this.shown[index];
-    const go = (to: number): void => {
+    const goTo = (to: number): void => {
       const next = this.shown[Math.min(Math.max(0, to), this.shown.length - 1)];
       if (next && this.model) this.select(to, { display: this.model.display, kind: "link", name: next.link.name });
     };
-    if (event.key === "ArrowDown") go(index + 1);
-    else if (event.key === "ArrowUp") go(index - 1);
-    else if (event.key === "Home") go(0);
-    else if (event.key === "End") go(this.shown.length - 1);
-    else if (event.key === "ArrowRight" && row?.inner && row.folded) this.toggle(index);
-    else if (event.key === "ArrowRight") go(index + 1);
-    else if (event.key === "ArrowLeft" && row?.inner && !row.folded) this.toggle(index);
-    else if (event.key === "ArrowLeft" && row?.joint) go(this.shown.findIndex((each) => each.link.name === row.joint?.parent));
+    if (event.key === "ArrowDown") goTo(index + 1);
+    else if (event.key === "ArrowUp") goTo(index - 1);
+    else if (event.key === "Home") goTo(0);
+    else if (event.key === "End") goTo(this.shown.length - 1);
+    else if (event.key === "ArrowRight" && row?.hasChildren && row.folded) this.toggle(index);
+    else if (event.key === "ArrowRight") goTo(index + 1);
+    else if (event.key === "ArrowLeft" && row?.hasChildren && !row.folded) this.toggle(index);
+    else if (event.key === "ArrowLeft" && row?.joint) goTo(this.shown.findIndex((each) => each.link.name === row.joint?.parent));
     else if (event.key === "Enter" && row?.joint && this.model) {
-      // From a link to its joint, and back.
+      // Switch from a link to its joint, or back.
       const kind = this.session.focus.current?.kind === "joint" ? "link" : "joint";
       const name = kind === "link" ? row.link.name : row.joint.name;
       this.session.focus.select({ display: this.model.display, kind, name });

@@ -2,27 +2,27 @@ import { button, coalesced, h } from "../../dom";
 import { icon } from "../../icons";
 import type { CallSite, SourceRange } from "../../protocol";
 import { EXPANDED, type DescriptionModel } from "../../state/description-model";
-import { same } from "../../state/element-focus";
+import { isSameElement } from "../../state/element-focus";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import { holdWhileSeen } from "../../widgets/when-seen";
+import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { placeText, shortPath, shortPlace } from "../place";
 import { currentModel } from "./current-model";
 import { SourceView, type Highlight } from "./source-view";
 
-/** A place to show that is none of an element's: a diagnostic's, a macro call's. */
-interface Spot {
+/** A place to show that is not the place of an element, such as that of a diagnostic or macro call. */
+interface RequestedPlace {
   readonly file: string;
   readonly line: number;
   readonly look: Highlight["look"];
-  /** The display whose description the file belongs to, where that is another one than the panels are about. */
+  /** The display whose description the file belongs to, if that is not the one that the panels show. */
   readonly display: string | undefined;
-  /** The file's name for readers, where that is not its path, such as one of a commit. */
+  /** The file's name for users, if that is not its path: a file of a commit, for example. */
   readonly name: string | undefined;
 }
 
-/** The files that the description is written in, and beside them what they expand to; the selected link or joint is marked in both. */
+/** The files of the description, and next to them the expanded text. The selected link or joint is marked in both. */
 export class SourcePanel implements Panel {
   readonly id = "source";
   readonly icon = "code";
@@ -34,13 +34,13 @@ export class SourcePanel implements Panel {
   private readonly notice = h("p", { class: "empty" });
   private readonly empty = h("p", { class: "empty" }, strings.description.waiting);
   private readonly panes: HTMLElement;
-  /** The file that is shown. */
+  /** The file shown. */
   private file = "";
-  private spot: Spot | null = null;
+  private requested: RequestedPlace | null = null;
   private model: DescriptionModel | undefined;
-  private visible = false;
-  /** Places to scroll to once their text is here. */
-  private wanted: { expanded: number | null; origin: number | null } = { expanded: null, origin: null };
+  private isVisible = false;
+  /** The lines to scroll to once their text has arrived. */
+  private pendingReveal: { expanded: number | null; origin: number | null } = { expanded: null, origin: null };
 
   constructor(private readonly session: Session) {
     const words = strings.description.source;
@@ -64,34 +64,34 @@ export class SourcePanel implements Panel {
     this.element = h("div", { class: "panel source-panel" }, this.empty, this.panes);
     const { description, focus } = session;
     const update = coalesced(() => this.update());
-    holdWhileSeen(
+    holdWhileVisible(
       this.element,
       () => {
-        this.visible = true;
+        this.isVisible = true;
         const release = description.hold();
         return () => {
-          this.visible = false;
+          this.isVisible = false;
           release();
         };
       },
-      () => this.renewed(),
+      () => this.refresh(),
     );
-    description.arrived.on(coalesced(() => this.renewed()));
+    description.arrived.on(coalesced(() => this.refresh()));
     description.textArrived.on(update);
     description.textsOutdated.on(update);
-    focus.changed.on(coalesced(() => this.focused()));
+    focus.changed.on(coalesced(() => this.showFocus()));
     this.update();
   }
 
   /** Shows a line of a file, such as a diagnostic's. */
-  reveal(file: string, line: number, { look = "problem", display, name }: Partial<Pick<Spot, "look" | "display" | "name">> = {}): void {
-    this.spot = { file, line, look: display === undefined ? look : "focus", display, name };
+  reveal(file: string, line: number, { look = "problem", display, name }: Partial<Pick<RequestedPlace, "look" | "display" | "name">> = {}): void {
+    this.requested = { file, line, look: display === undefined ? look : "focus", display, name };
     this.file = file;
-    this.wanted.origin = line;
+    this.pendingReveal.origin = line;
     this.update();
   }
 
-  /** For tests: what is shown and marked. */
+  /** Returns what is shown and marked, for tests. */
   inspect(): object {
     const marks = (view: SourceView): object => view.highlighted.map(({ from, to, look }) => ({ from, to, look }));
     return {
@@ -100,22 +100,25 @@ export class SourcePanel implements Panel {
     };
   }
 
-  /** Another element is the one, or its place is another. */
-  private focused(): void {
+  /** Follows the selection, or a new place of the selected element. */
+  private showFocus(): void {
     this.model = currentModel(this.session);
-    const { expanded, origin } = this.places();
-    if (expanded) this.wanted.expanded = expanded.line;
+    const { expanded, origin } = this.writtenPlaces();
+    if (expanded) this.pendingReveal.expanded = expanded.line;
     if (origin) {
-      this.spot = null;
+      this.requested = null;
       this.file = origin.file;
-      this.wanted.origin = origin.line;
+      this.pendingReveal.origin = origin.line;
     }
     this.update();
   }
 
-  /** The panel is seen again, or the description is another; a place that was asked for stays until another element is the one. */
-  private renewed(): void {
-    if (this.spot === null || this.spot.file !== this.file) this.focused();
+  /**
+   * Updates when the panel becomes visible or the description changes. A place that was asked for stays until the
+   * selection changes.
+   */
+  private refresh(): void {
+    if (this.requested === null || this.requested.file !== this.file) this.showFocus();
     else this.update();
   }
 
@@ -123,23 +126,23 @@ export class SourcePanel implements Panel {
     this.model = currentModel(this.session);
     const { model } = this;
     const faulty = this.session.diagnostics.flatMap((item) => (item.file === null ? [] : [item.file]));
-    const files = [...new Set([...(model?.description.files ?? []), ...faulty, ...(this.spot ? [this.spot.file] : [])])];
+    const files = [...new Set([...(model?.description.files ?? []), ...faulty, ...(this.requested ? [this.requested.file] : [])])];
     this.empty.hidden = model !== undefined || files.length > 0;
     this.panes.hidden = !this.empty.hidden;
     if (!files.includes(this.file)) this.file = files[0] ?? "";
     this.listFiles(files);
-    if (!this.visible) return;
+    if (!this.isVisible) return;
     this.show();
   }
 
   private show(): void {
     const display = this.model?.display ?? "";
-    const { expanded, origin } = this.places();
+    const { expanded, origin } = this.writtenPlaces();
     const words = strings.description.source;
     if (this.model) this.fill(this.expanded, this.session.description.text(display, EXPANDED), marks(expanded), "expanded");
-    const text = this.file === "" ? null : this.session.description.text(this.spot?.file === this.file ? (this.spot.display ?? display) : display, this.file);
+    const text = this.file === "" ? null : this.session.description.text(this.requested?.file === this.file ? (this.requested.display ?? display) : display, this.file);
     const marked = origin?.file === this.file ? marks(origin) : [];
-    if (this.spot?.file === this.file) marked.push({ from: this.spot.line, to: this.spot.line, look: this.spot.look });
+    if (this.requested?.file === this.file) marked.push({ from: this.requested.line, to: this.requested.line, look: this.requested.look });
     this.notice.hidden = typeof text === "string";
     this.origin.element.hidden = text === null;
     if (this.file === "") this.notice.textContent = words.noOrigin;
@@ -152,18 +155,18 @@ export class SourcePanel implements Panel {
     if (typeof text !== "string") return; // the old one stays until the new one is here
     view.setText(text);
     view.setHighlights(highlights);
-    const line = this.wanted[pane];
+    const line = this.pendingReveal[pane];
     if (line !== null) view.reveal(line);
-    this.wanted[pane] = null;
+    this.pendingReveal[pane] = null;
   }
 
-  private places(): { expanded: SourceRange | null; origin: SourceRange | null; calls: readonly CallSite[] } {
+  private writtenPlaces(): { expanded: SourceRange | null; origin: SourceRange | null; calls: readonly CallSite[] } {
     const { current } = this.session.focus;
-    const written = current && this.model?.display === current.display ? this.model.written(current) : undefined;
+    const written = current && this.model?.display === current.display ? this.model.placesOf(current) : undefined;
     return written ?? { expanded: null, origin: null, calls: [] };
   }
 
-  /** The findings in the file that is shown. */
+  /** Returns the findings in the file shown. */
   private problems(): Highlight[] {
     return this.session.diagnostics.flatMap(({ file, line, end_line }) =>
       file === this.file && line !== null ? [{ from: line, to: end_line ?? line, look: "problem" as const }] : [],
@@ -172,7 +175,7 @@ export class SourcePanel implements Panel {
 
   private listFiles(files: readonly string[]): void {
     const options = files.map((file) => {
-      const name = this.spot?.file === file ? this.spot.name : undefined;
+      const name = this.requested?.file === file ? this.requested.name : undefined;
       const option = h("option", { title: name ?? file }, name === undefined ? shortPath(file) : shortPlace(name));
       option.value = file;
       return option;
@@ -185,29 +188,31 @@ export class SourcePanel implements Panel {
 
   private openFile(file: string): void {
     this.file = file;
-    this.wanted.origin = this.places().origin?.file === file ? (this.places().origin?.line ?? 1) : 1;
+    this.pendingReveal.origin = this.writtenPlaces().origin?.file === file ? (this.writtenPlaces().origin?.line ?? 1) : 1;
     this.update();
   }
 
-  /** The calls and includes on the way, each a way to its place. */
+  /** Shows the macro calls and includes that lead to the element, each as a link to its place. */
   private showTrail(): void {
     const words = strings.description.source;
-    const { origin, calls } = this.places();
+    const { origin, calls } = this.writtenPlaces();
     const steps = calls.map(({ macro, file, line, column }) => {
       const text = words.call(macro, placeText(shortPath(file, 1), line, null));
       return button(placeText(file, line, column), () => this.reveal(file, line, { look: "focus" }), "trail-step", text);
     });
-    const back = origin && this.spot
-      ? button(words.origin, () => this.focused(), "tool bare", icon("reset"))
+    const back = origin && this.requested
+      ? button(words.origin, () => this.showFocus(), "tool bare", icon("reset"))
       : null;
     this.trail.hidden = steps.length === 0;
     this.trail.replaceChildren(h("span", { class: "tag" }, words.made), ...steps, ...(back ? [back] : []));
   }
 
-  /** Selects what is written on a line; where that is several, as in a macro, the one after the selected. */
+  /**
+   * Selects the element written on a line; if a macro makes the line yield several, the one after the selected element.
+   */
   private choose(file: string, line: number): void {
     const here = this.model?.elementsAt(file, line) ?? [];
-    const at = here.findIndex((element) => same(element, this.session.focus.current));
+    const at = here.findIndex((element) => isSameElement(element, this.session.focus.current));
     const next = here[(at + 1) % here.length];
     if (next) this.session.focus.select(next);
   }

@@ -4,17 +4,17 @@ import { strings } from "../../strings";
 import { VirtualRows } from "../../widgets/virtual-rows";
 
 const ROW_PX = 18;
-/** Longer lines are cut: some files are one line of a megabyte. */
+/** Characters; longer lines are cut, because some files are a single line of a megabyte. */
 const LONGEST_LINE = 4000;
 
-/** Lines from..to, 1-based and inclusive, and how they are to look. */
+/** Lines `from` to `to`, 1-based and inclusive, and how they are marked. */
 export interface Highlight {
   readonly from: number;
   readonly to: number;
   readonly look: "focus" | "problem";
 }
 
-/** A text with line numbers and colours, of which only what is in sight is drawn. */
+/** A text with line numbers and syntax colours; only the visible lines are drawn. */
 export class SourceView {
   readonly element: HTMLElement;
   private readonly rows = new VirtualRows("source-lines", ROW_PX, (index) => this.row(index));
@@ -24,16 +24,16 @@ export class SourceView {
   private cursor = 1;
   private text: string | null = null;
 
-  /** @param chosen called with the line that the user clicked, or pressed Enter on. */
+  /** @param onChosen - called with the line that the user clicked, or pressed Enter on. */
   constructor(
     label: string,
-    private readonly chosen: (line: number) => void,
+    private readonly onChosen: (line: number) => void,
   ) {
     this.element = this.rows.element;
     this.element.setAttribute("role", "region");
     this.element.setAttribute("aria-label", label);
-    this.element.addEventListener("keydown", (event) => this.keyed(event));
-    this.element.addEventListener("click", (event) => this.clicked(event));
+    this.element.addEventListener("keydown", (event) => this.onKeyDown(event));
+    this.element.addEventListener("click", (event) => this.onClick(event));
   }
 
   get lineCount(): number {
@@ -44,7 +44,7 @@ export class SourceView {
     return this.highlights;
   }
 
-  /** Shows a text; the same one stays as it is. */
+  /** Shows a text; does nothing if it is shown already. */
   setText(text: string): void {
     if (text === this.text) return;
     this.text = text;
@@ -62,7 +62,7 @@ export class SourceView {
     this.rows.refresh();
   }
 
-  /** Scrolls to a line; the cursor goes there. */
+  /** Scrolls to a line and moves the cursor there. */
   reveal(line: number): void {
     this.cursor = line;
     this.rows.reveal(line - 1);
@@ -85,13 +85,13 @@ export class SourceView {
     return row;
   }
 
-  private clicked(event: MouseEvent): void {
+  private onClick(event: MouseEvent): void {
     if (!window.getSelection()?.isCollapsed) return; // text is being selected
     const row = (event.target as HTMLElement).closest<HTMLElement>(".source-line");
     if (row) this.choose(Number(row.dataset["line"]));
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
     if (step !== undefined && !event.ctrlKey && !event.metaKey) {
       this.cursor = Math.min(Math.max(1, this.cursor + step), this.lines.length);
@@ -106,7 +106,7 @@ export class SourceView {
   private choose(line: number): void {
     this.cursor = line;
     this.showCursor();
-    this.chosen(line);
+    this.onChosen(line);
   }
 
   private showCursor(): void {

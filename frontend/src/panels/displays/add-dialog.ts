@@ -15,7 +15,7 @@ interface Choice {
 
 type Tab = "type" | "topic";
 
-/** RViz's dialog that adds a display: by its type, or by a topic that it shows. */
+/** RViz's dialog that adds a display, by its type or by a topic that it shows. */
 export class AddDialog {
   private readonly dialog: Dialog;
   private readonly search = h("input", { class: "field" });
@@ -24,14 +24,14 @@ export class AddDialog {
   private readonly showAll = h("input", { class: "check" });
   private readonly allBox: HTMLElement;
   private readonly tabs: Readonly<Record<Tab, HTMLButtonElement>>;
-  private readonly forget: () => void;
+  private readonly stopListening: () => void;
   private tab: Tab = "type";
-  private waits = false;
+  private isWaiting = false;
   private choices: Choice[] = [];
   private chosen: Choice | null = null;
-  private named = "";
+  private suggestedName = "";
 
-  /** @param group - what the display goes into; null for none. */
+  /** @param group - the group that the display is added to; null for none. */
   constructor(
     private readonly session: Session,
     private readonly group: DisplayState | null,
@@ -42,8 +42,8 @@ export class AddDialog {
     this.search.placeholder = words.search;
     this.search.setAttribute("aria-label", words.search);
     this.search.addEventListener("input", () => this.fill());
-    this.search.addEventListener("keydown", (event) => this.keyed(event));
-    this.list.addEventListener("keydown", (event) => this.keyed(event));
+    this.search.addEventListener("keydown", (event) => this.onKeyDown(event));
+    this.list.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.name.setAttribute("aria-label", words.displayName);
     this.name.maxLength = 200;
     this.showAll.type = "checkbox";
@@ -62,12 +62,12 @@ export class AddDialog {
       [{ label: strings.shell.cancel }, { label: words.add, main: true, run: () => this.accept() }],
       "add-dialog",
     );
-    this.forget = session.configuration.offered.on(() => {
-      if (!this.waits) return; // what is listed stays where the mouse may be
-      this.waits = false;
+    this.stopListening = session.configuration.choicesArrived.on(() => {
+      if (!this.isWaiting) return; // what is listed stays where the mouse may be
+      this.isWaiting = false;
       this.fill();
     });
-    this.dialog.element.addEventListener("close", () => this.forget());
+    this.dialog.element.addEventListener("close", () => this.stopListening());
   }
 
   open(): void {
@@ -76,15 +76,15 @@ export class AddDialog {
   }
 
   private makeTab(tab: Tab, label: string): HTMLButtonElement {
-    const made = button(label, () => this.show(tab), "tab", label);
-    made.setAttribute("role", "tab");
-    made.addEventListener("keydown", (event) => {
+    const tabButton = button(label, () => this.show(tab), "tab", label);
+    tabButton.setAttribute("role", "tab");
+    tabButton.addEventListener("keydown", (event) => {
       if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
       const other = tab === "type" ? "topic" : "type";
       this.show(other);
       this.tabs[other].focus();
     });
-    return made;
+    return tabButton;
   }
 
   private show(tab: Tab): void {
@@ -95,46 +95,46 @@ export class AddDialog {
     }
     this.allBox.hidden = tab !== "topic";
     const { configuration } = this.session;
-    this.waits = tab === "topic" || configuration.choices === null;
-    if (this.waits) configuration.askChoices();
+    this.isWaiting = tab === "topic" || configuration.choices === null;
+    if (this.isWaiting) configuration.requestChoices();
     this.fill();
   }
 
   private fill(): void {
-    const wanted = this.search.value.trim().toLowerCase();
+    const query = this.search.value.trim().toLowerCase();
     const before = this.chosen;
     this.choices = [];
-    const entries = this.tab === "type" ? this.types(wanted) : this.byTopic(wanted);
+    const entries = this.tab === "type" ? this.types(query) : this.byTopic(query);
     this.list.replaceChildren(...entries);
     this.list.role = entries.length > 0 ? "listbox" : "group"; // a listbox without options is none
     if (entries.length === 0) this.list.append(h("p", { class: "empty" }, this.emptyText()));
-    const again = this.choices.find((each) => each.cls === before?.cls && each.topic === before.topic);
-    this.choose(again ?? (wanted === "" ? null : (this.choices[0] ?? null)));
+    const again = this.choices.find((choice) => choice.cls === before?.cls && choice.topic === before.topic);
+    this.choose(again ?? (query === "" ? null : (this.choices[0] ?? null)));
     const first = this.choices[0];
     if (first && !again) first.element.tabIndex = 0;
   }
 
   private emptyText(): string {
     const words = strings.displays;
-    if (this.waits) return words.asking;
+    if (this.isWaiting) return words.asking;
     return this.tab === "topic" && this.offered.topics.length === 0 ? words.noTopics : words.notFound;
   }
 
   private get offered(): { classes: DisplayClass[]; topics: TopicChoice[] } {
     const { choices } = this.session.configuration;
-    return this.waits || choices === null ? { classes: [], topics: [] } : choices;
+    return this.isWaiting || choices === null ? { classes: [], topics: [] } : choices;
   }
 
-  private types(wanted: string): HTMLElement[] {
+  private types(query: string): HTMLElement[] {
     return this.offered.classes
       .map(({ cls, messages }) => ({ cls, about: aboutDisplay(cls), messages }))
-      .filter(({ cls, about, messages }) => [cls, about, ...messages].some((text) => text.toLowerCase().includes(wanted)))
+      .filter(({ cls, about, messages }) => [cls, about, ...messages].some((text) => text.toLowerCase().includes(query)))
       .map(({ cls, about }) => this.choice(cls, null, shortName(cls), about));
   }
 
-  private byTopic(wanted: string): HTMLElement[] {
+  private byTopic(query: string): HTMLElement[] {
     const matches = ({ topic, message, classes }: TopicChoice): boolean =>
-      [topic, message, ...classes].some((text) => text.toLowerCase().includes(wanted));
+      [topic, message, ...classes].some((text) => text.toLowerCase().includes(query));
     const listed = this.offered.topics.filter((each) => each.classes.length > 0 || this.showAll.checked);
     return listed.filter(matches).map((each) => {
       const { topic, message, classes } = each;
@@ -143,7 +143,7 @@ export class AddDialog {
       const rows = ordered.map((cls) => this.choice(cls, topic, shortName(cls), aboutDisplay(cls)));
       const [obvious] = rows;
       const name = h("div", { class: "topic-name" }, topic, h("span", { class: "topic-type" }, message));
-      // The name represents the display that every user would take.
+      // The name stands for the display that most users would choose.
       for (const kind of ["click", "dblclick"] as const) {
         name.addEventListener(kind, () => obvious?.dispatchEvent(new MouseEvent(kind)));
       }
@@ -177,15 +177,15 @@ export class AddDialog {
       each.element.tabIndex = each === choice ? 0 : -1;
     }
     this.dialog.ready = choice !== null;
-    // A name that the user typed stays.
-    if (choice && (this.name.value === "" || this.name.value === this.named)) {
-      this.named = shortName(choice.cls);
-      this.name.value = this.named;
+    // Keep a name that the user typed.
+    if (choice && (this.name.value === "" || this.name.value === this.suggestedName)) {
+      this.suggestedName = shortName(choice.cls);
+      this.name.value = this.suggestedName;
     }
     choice?.element.scrollIntoView({ block: "nearest" });
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const index = this.chosen ? this.choices.indexOf(this.chosen) : -1;
     const inList = event.target !== this.search;
     const step = { ArrowDown: 1, ArrowUp: -1, PageDown: 8, PageUp: -8 }[event.key];
@@ -207,7 +207,7 @@ export class AddDialog {
   }
 }
 
-/** The purpose of a class of displays, in a sentence. */
+/** Returns the purpose of a display class, in one sentence. */
 function aboutDisplay(cls: string): string {
   return (strings.displays.about as Readonly<Record<string, string | undefined>>)[shortName(cls)] ?? cls;
 }

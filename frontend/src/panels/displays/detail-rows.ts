@@ -1,7 +1,7 @@
 import type { JointScene } from "../../protocol";
 import type { DisplayState } from "../../state/displays";
 import type { FrameStore } from "../../state/frames";
-import { composed, relative, type PoseNumbers } from "../../state/pose-numbers";
+import { compose, relativeTo, type PoseNumbers } from "../../state/pose-numbers";
 import type { PropertyNode } from "../../state/properties";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -9,12 +9,12 @@ import type { DetailName } from "../../strings/en/details";
 import { formatNumber } from "../../tree/numbers";
 import type { TreeItem } from "../../tree/tree-item";
 
-/** Positions and quaternions are rounded to this, m. */
-const FINEST = 1e-6;
+/** Positions (m) and quaternions are rounded to multiples of this. */
+const ROUNDING = 1e-6;
 
 /**
- * The read-only rows that a row with `details` is shown with: where a frame, link or joint is now. They are not sent by
- * the server, which would have to with every move: the page has the poses. Names and forms are RViz's.
+ * Returns the read-only rows below a row with `details`: the current pose of a frame, link or joint. The page has the
+ * poses; the server would have to send these rows with every movement. Names and forms are RViz's.
  */
 export function detailRows(node: PropertyNode, display: DisplayState, session: Session): TreeItem[] {
   switch (node.details) {
@@ -33,14 +33,14 @@ export function detailRows(node: PropertyNode, display: DisplayState, session: S
 
 function frameRows({ id, name }: PropertyNode, frames: FrameStore): TreeItem[] {
   const parent = (): number => frames.parents[frames.row(name)] ?? -1;
-  const seen = (): PoseNumbers | null => {
+  const relativePose = (): PoseNumbers | null => {
     const [above, here] = [poseOf(frames, parent()), poseOf(frames, frames.row(name))];
-    return above && here ? relative(above, here) : null;
+    return above && here ? relativeTo(above, here) : null;
   };
   return [
     textRow(`${id}#Parent`, "Parent", () => frames.names[parent()] ?? ""),
     ...poseRows(id, () => poseOf(frames, frames.row(name))),
-    ...poseRows(id, seen, "Relative "),
+    ...poseRows(id, relativePose, "Relative "),
   ];
 }
 
@@ -81,17 +81,17 @@ function effortRows({ id, name }: PropertyNode, display: DisplayState, session: 
 function poseRows(id: string, pose: () => PoseNumbers | null, prefix = ""): TreeItem[] {
   const [position, orientation] = [`${prefix}Position`, `${prefix}Orientation`];
   return [
-    vectorRow(`${id}#${position}`, position, ["X", "Y", "Z"], () => settled(pose())?.slice(0, 3) ?? null),
-    vectorRow(`${id}#${orientation}`, orientation, ["X", "Y", "Z", "W"], () => settled(pose())?.slice(3) ?? null),
+    vectorRow(`${id}#${position}`, position, ["X", "Y", "Z"], () => rounded(pose())?.slice(0, 3) ?? null),
+    vectorRow(`${id}#${orientation}`, orientation, ["X", "Y", "Z", "W"], () => rounded(pose())?.slice(3) ?? null),
   ];
 }
 
-/** Without what single precision adds to zeros. */
-function settled(pose: PoseNumbers | null): number[] | null {
-  return pose && pose.map((part) => Math.round(part / FINEST) * FINEST);
+/** Rounds away what single precision adds to zeros. */
+function rounded(pose: PoseNumbers | null): number[] | null {
+  return pose && pose.map((part) => Math.round(part / ROUNDING) * ROUNDING);
 }
 
-/** Numbers in one row as RViz writes them, and a row for each below it. */
+/** Returns a row with numbers in RViz's notation, with one row for each number below it. */
 function vectorRow(
   key: string,
   name: string,
@@ -137,7 +137,7 @@ function jointPose(joint: JointScene, display: DisplayState, session: Session): 
   const above = linkPose(joint.parent, display, session);
   const [x = 0, y = 0, z = 0] = joint.position;
   const [qx = 0, qy = 0, qz = 0, qw = 1] = joint.quaternion;
-  return above && composed(above, [x, y, z, qx, qy, qz, qw]);
+  return above && compose(above, [x, y, z, qx, qy, qz, qw]);
 }
 
 function poseOf(frames: FrameStore, row: number): PoseNumbers | null {

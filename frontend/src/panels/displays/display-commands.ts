@@ -6,7 +6,7 @@ import type { MenuEntry } from "../../widgets/menu";
 import { keyText, matches, SHORTCUTS } from "../../widgets/shortcuts";
 import { AddDialog } from "./add-dialog";
 
-/** The commands on the selected display, or on all of them. */
+/** The commands for the selected display, or for all selected displays. */
 export class DisplayCommands {
   constructor(
     private readonly session: Session,
@@ -46,20 +46,20 @@ export class DisplayCommands {
     return this.all().map(({ id }) => id);
   }
 
-  /** Moves the display past the one above or below it, into and out of groups on the way as a list would. */
+  /** Moves the display past its neighbour above or below, within its group. */
   move(up: boolean): void {
     const display = this.selected();
     if (!display) return;
     const { displays, configuration } = this.session;
-    const siblings = displays.within(display.group);
+    const siblings = displays.childrenOf(display.group);
     const index = siblings.indexOf(display);
     const group = display.group?.id ?? null;
     if (up && index > 0) configuration.move([display.id], group, siblings[index - 1]?.id ?? null);
     else if (!up && index < siblings.length - 1) configuration.move([display.id], group, siblings[index + 2]?.id ?? null);
   }
 
-  /** Whether a key was one of these; on the row of a property only Add is. */
-  pressed(event: KeyboardEvent, onDisplay: boolean): boolean {
+  /** Runs the command of a key and returns whether there was one. On the row of a property, only Add has a key. */
+  runKey(event: KeyboardEvent, onDisplay: boolean): boolean {
     const keys: readonly (readonly [keyof typeof SHORTCUTS, () => void])[] = [
       ["add", () => this.add()],
       ["addToo", () => this.add()],
@@ -75,7 +75,7 @@ export class DisplayCommands {
     return true;
   }
 
-  /** The menu of a display. */
+  /** Returns the context menu of a display. */
   menu(display: DisplayState): MenuEntry[] {
     const words = strings.displays;
     const { session } = this;

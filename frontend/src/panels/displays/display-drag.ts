@@ -1,6 +1,6 @@
 import type { DisplayState } from "../../state/displays";
 
-/** The part of a display's row on which something is dropped. */
+/** The part of a display's row on which the dragged display is dropped. */
 export type DropPart = "before" | "inside" | "after";
 
 export interface DropPlace {
@@ -8,7 +8,7 @@ export interface DropPlace {
   before: string | null;
 }
 
-/** The new place of a display that is dropped on another; null where it cannot go. */
+/** Returns the new place of a display that is dropped on another; null where it cannot go. */
 export function dropPlace(
   displays: readonly DisplayState[],
   dragged: DisplayState,
@@ -17,16 +17,16 @@ export function dropPlace(
 ): DropPlace | null {
   if (target === dragged || target.isWithin(dragged)) return null;
   if (part === "inside") {
-    const first = displays.find((each) => each.group === target && each !== dragged);
+    const first = displays.find((display) => display.group === target && display !== dragged);
     return target.isGroup ? { group: target.id, before: first?.id ?? null } : null;
   }
   const group = target.group?.id ?? null;
   if (part === "before") return { group, before: target.id };
-  const siblings = displays.filter((each) => each.group === target.group && each !== dragged);
+  const siblings = displays.filter((display) => display.group === target.group && display !== dragged);
   return { group, before: siblings[siblings.indexOf(target) + 1]?.id ?? null };
 }
 
-/** The part of a row that a pointer is on: a group's middle means into it. */
+/** Returns the part of a row under the pointer; the middle of a group's row means into the group. */
 export function dropPart(offset: number, height: number, isGroup: boolean): DropPart {
   const part = offset / height;
   if (isGroup && part > 0.3 && part < 0.7) return "inside";
@@ -35,7 +35,7 @@ export function dropPart(offset: number, height: number, isGroup: boolean): Drop
 
 interface Tree {
   readonly element: HTMLElement;
-  /** The display whose row an element is in, and that row, if it is the display's own. */
+  /** Returns the display that an element belongs to, and its row if the element is in the display's own row. */
   displayAt(target: EventTarget | null): { display: DisplayState; row: HTMLElement | null } | null;
   displays(): readonly DisplayState[];
   move(dragged: DisplayState, place: DropPlace): void;
@@ -50,7 +50,7 @@ export class DisplayDrag {
     const { element } = tree;
     element.addEventListener("pointerdown", (event) => {
       const found = tree.displayAt(event.target);
-      // Fields and boxes in the row have their own use for the mouse.
+      // Fields and boxes in the row handle the mouse themselves.
       const free = event.target instanceof Element && event.target.closest(".row-value, .twist") === null;
       if (found?.row) found.row.draggable = free;
     });
@@ -60,7 +60,7 @@ export class DisplayDrag {
       event.dataTransfer.effectAllowed = "move";
       event.dataTransfer.setData("text/plain", this.dragged.name);
     });
-    element.addEventListener("dragover", (event) => this.over(event));
+    element.addEventListener("dragover", (event) => this.onDragOver(event));
     element.addEventListener("dragleave", (event) => {
       if (!element.contains(event.relatedTarget as Node | null)) this.mark(null);
     });
@@ -73,7 +73,7 @@ export class DisplayDrag {
     element.addEventListener("dragend", () => this.end());
   }
 
-  private over(event: DragEvent): void {
+  private onDragOver(event: DragEvent): void {
     const place = this.placeOf(event);
     this.mark(place?.row ?? null, place?.part);
     if (!place) return;

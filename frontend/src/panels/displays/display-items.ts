@@ -9,10 +9,10 @@ import { propertyItem } from "../../tree/property-item";
 import type { TreeItem } from "../../tree/tree-item";
 import { displayRows } from "./robot-rows";
 
-/** The rows of the Displays panel, read from the session each time the tree is drawn. */
+/** Returns the rows of the Displays panel, read from the session each time the tree is drawn. */
 export function displayItems(session: Session): TreeItem[] {
   const { displays } = session;
-  if (!displays.known) return [];
+  if (!displays.isKnown) return [];
   const set = (id: string, value: PropertyValue): void => session.setProperty(id, value);
   return [
     {
@@ -28,7 +28,7 @@ export function displayItems(session: Session): TreeItem[] {
       children: () => displays.globalOptions.nodes.map((node) => propertyItem(node, set)),
     },
     statusItem("#status", strings.tree.globalStatus, displays.globalLevel, displays.globalStatus, true),
-    ...displays.within(null).map((display) => displayItem(session, display, set)),
+    ...displays.childrenOf(null).map((display) => displayItem(session, display, set)),
   ];
 }
 
@@ -45,9 +45,9 @@ function displayItem(
     status.push(statusItem(`${display.id}#status`, name, level, display.status, false));
   }
   const within = (): TreeItem[] =>
-    session.displays.within(display).map((each) => displayItem(session, each, set));
-  const offered = (item: TreeItem): TreeItem =>
-    item.kind === "topic" ? { ...item, ask: (show) => offerTopics(session, display, item.name, show) } : item;
+    session.displays.childrenOf(display).map((each) => displayItem(session, each, set));
+  const withTopics = (item: TreeItem): TreeItem =>
+    item.kind === "topic" ? { ...item, requestNames: (show) => offerTopics(session, display, item.name, show) } : item;
   return {
     key: display.id,
     name: display.name,
@@ -56,21 +56,21 @@ function displayItem(
     description: describe(display, drawn),
     icon: drawn ? displayIcon(display.drawing) : "unknown",
     strong: true,
-    severally: true,
+    multiSelectable: true,
     muted: !drawn || !display.enabled,
     ...(drawn && display.enabled ? { level: worstWithin(session, display) } : {}),
-    ...(display.troubles.length > 0 ? { hint: [display.name, ...display.troubles.map(troubleText)].join("\n") } : {}),
+    ...(display.problems.length > 0 ? { hint: [display.name, ...display.problems.map(troubleText)].join("\n") } : {}),
     ...(drawn ? {} : { badge: strings.tree.notDrawn }),
     expanded: display.isGroup || (display.enabled && isOnlyContent(session, display)),
-    children: () => [...status, ...displayRows(display, session, set).map(offered), ...within()],
+    children: () => [...status, ...displayRows(display, session, set).map(withTopics), ...within()],
     set: (value) => set(display.enabledId, value),
   };
 }
 
-/** The message type of robots' descriptions. */
-const TEXT = "std_msgs/msg/String";
+/** The message type of robot descriptions. */
+const DESCRIPTION_TYPE = "std_msgs/msg/String";
 
-/** The topics that fit a row of a display. */
+/** Asks the server for the topics that suit a row of a display, and passes them to `show`. */
 function offerTopics(
   session: Session,
   display: DisplayState,
@@ -80,26 +80,26 @@ function offerTopics(
   const { configuration } = session;
   const own = display.rows.find(row)?.topics;
   const words = own?.words ?? [];
-  const named = (topic: string): boolean => words.length === 0 || words.some((word) => topic.toLowerCase().includes(word));
-  const forget = configuration.offered.on(({ classes, topics }) => {
+  const matchesWords = (topic: string): boolean => words.length === 0 || words.some((word) => topic.toLowerCase().includes(word));
+  const forget = configuration.choicesArrived.on(({ classes, topics }) => {
     forget();
-    const known = own?.messages ?? classes.find((each) => each.cls === display.cls)?.messages ?? [];
-    const messages = known.length > 0 ? known : [TEXT];
-    show(topics.filter(({ topic, message }) => messages.includes(message) && named(topic)).map(({ topic }) => topic));
+    const known = own?.messages ?? classes.find((entry) => entry.cls === display.cls)?.messages ?? [];
+    const messages = known.length > 0 ? known : [DESCRIPTION_TYPE];
+    show(topics.filter(({ topic, message }) => messages.includes(message) && matchesWords(topic)).map(({ topic }) => topic));
   });
-  configuration.askChoices();
+  configuration.requestChoices();
 }
 
 function isDrawn(display: DisplayState): boolean {
   return display.isGroup || (display.supported && DRAWINGS.has(display.drawing));
 }
 
-/** A row of a status in one line. */
+/** Returns a status row as one line. */
 export function troubleText({ name, text }: StatusRow): string {
   return `${name}: ${text}`;
 }
 
-/** A description of a display, in a sentence or two. */
+/** Returns a description of a display, in a sentence or two. */
 export function describe(display: DisplayState, drawn = isDrawn(display)): string {
   const name = display.cls.split("/").pop() ?? "";
   const about = (strings.displays.about as Readonly<Record<string, string | undefined>>)[name];
@@ -107,16 +107,19 @@ export function describe(display: DisplayState, drawn = isDrawn(display)): strin
   return `${display.cls}. ${rest}`;
 }
 
-/** Displays that take no messages of their own: they do not need to be seen in the list. */
+/** Displays without messages; they are visible without their rows in the list. */
 const SCENERY = ["Grid", "Axes", "TF", "Group"];
 
-/** A RobotModel that is all there is to look at starts open; otherwise its links would push the others out of sight. */
+/**
+ * Whether a RobotModel is the only content. It then starts expanded; otherwise its links would push other displays out
+ * of sight.
+ */
 function isOnlyContent(session: Session, display: DisplayState): boolean {
   if (!display.cls.endsWith("/RobotModel")) return false;
   return session.displays.displays.every((each) => each === display || SCENERY.includes(shortName(each.cls)));
 }
 
-/** A group shows the worst status of its members. */
+/** Returns the worst status of a display and, for a group, of its members. */
 function worstWithin(session: Session, display: DisplayState): ShownLevel {
   const levels = [display, ...session.displays.displays.filter((each) => each.isWithin(display))]
     .filter((each) => each.enabled)
@@ -155,7 +158,7 @@ function statusItem(
   };
 }
 
-/** Among hundreds of links the one that fails must be seen. */
+/** Sorts status rows by severity: among hundreds of links, the one that fails must be visible. */
 function worstFirst(rows: readonly StatusRow[]): StatusRow[] {
   const order: Readonly<Record<StatusRow["level"], number>> = { error: 0, warn: 1, ok: 2 };
   return [...rows].sort((a, b) => order[a.level] - order[b.level]);

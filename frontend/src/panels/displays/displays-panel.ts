@@ -13,9 +13,9 @@ import { DisplayCommands } from "./display-commands";
 import { DisplayDrag } from "./display-drag";
 import { describe, displayItems, troubleText } from "./display-items";
 import { followLiveValues } from "./live-values";
-import { isExpansion, linkOfKey, linkPath } from "./robot-rows";
+import { isExpansion, linkOfKey, linkRowPath } from "./robot-rows";
 
-/** RViz's Displays panel: what can be done, the property tree, and what the selected row means. */
+/** RViz's Displays panel: a toolbar, the property tree, and the description of the selected row. */
 export class DisplaysPanel implements Panel {
   readonly id = "displays";
   readonly icon = "displays";
@@ -24,23 +24,23 @@ export class DisplaysPanel implements Panel {
   private readonly commands: DisplayCommands;
   private readonly filter = h("input", { class: "field" });
   private readonly nothing = h("p", { class: "empty" }, strings.displays.nothingFound);
-  /** Comes with the first row that is selected. */
+  /** Hidden until a row is selected. */
   private readonly help = h("div", { class: "help", aria: { live: "polite" } });
   private explained = "";
   private readonly needsDisplay: HTMLButtonElement[] = [];
 
   constructor(private readonly session: Session) {
     this.tree = new TreeView(strings.panels.displays, () => this.items(), () => session.frames.names);
-    this.tree.keep(session.kept, this.id);
+    this.tree.preserveIn(session.memory, this.id);
     this.commands = new DisplayCommands(session, () => this.selected, () => this.selectedAll);
     this.nothing.hidden = this.help.hidden = true;
     this.element = h("div", { class: "panel displays-panel" }, this.toolbar(), this.filterBar(), this.nothing, this.tree.element, this.help);
     this.listen();
-    this.takeKeysAndMouse();
+    this.bindKeysAndMouse();
     this.enableButtons();
   }
 
-  /** The display that the selected row is of or belongs to. */
+  /** The display to which the selected row belongs. */
   private get selected(): DisplayState | null {
     return this.displayOf(this.tree.selection);
   }
@@ -55,9 +55,9 @@ export class DisplaysPanel implements Panel {
     const words = strings.displays;
     const { commands } = this;
     const tool = (label: string, name: Parameters<typeof icon>[0], keys: string, run: () => void): HTMLButtonElement => {
-      const made = button(`${label} (${keys})`, run, "tool bare", icon(name));
-      this.needsDisplay.push(made);
-      return made;
+      const toolButton = button(`${label} (${keys})`, run, "tool bare", icon(name));
+      this.needsDisplay.push(toolButton);
+      return toolButton;
     };
     return h(
       "div",
@@ -97,13 +97,13 @@ export class DisplaysPanel implements Panel {
     displays.valueChanged.on(({ node, display }) => {
       if (!display || !isExpansion(node)) return;
       const below = [`${display.id}/Links/`, `${display.id}/Joints/`];
-      this.tree.forgetExpansion((key) => below.some((start) => key.startsWith(start)));
+      this.tree.resetExpansion((key) => below.some((start) => key.startsWith(start)));
     });
     displays.statusChanged.on(this.tree.refresh);
     displays.statusChanged.on((display) => {
       if (display && this.tree.selection === display.id) this.explainDisplay(display);
     });
-    displays.rowAsked.on((display) => {
+    displays.rowRequested.on((display) => {
       this.filter.value = "";
       this.tree.reveal(pathTo(display));
       this.explainDisplay(display);
@@ -127,14 +127,14 @@ export class DisplaysPanel implements Panel {
     selection.changed.on(() => this.showSelection());
   }
 
-  private takeKeysAndMouse(): void {
+  private bindKeysAndMouse(): void {
     const { tree, commands, session } = this;
     tree.element.addEventListener(
       "keydown",
       (event) => {
         const onRow = event.target instanceof Element && event.target.matches("[role=treeitem], .check");
         const onDisplay = tree.selections.length > 0 && tree.selections.every((key) => session.displays.find(key));
-        if (!onRow || !commands.pressed(event, onDisplay)) return;
+        if (!onRow || !commands.runKey(event, onDisplay)) return;
         event.preventDefault();
         event.stopPropagation();
       },
@@ -184,20 +184,20 @@ export class DisplaysPanel implements Panel {
     this.tree.whenReleased(() => {
       if (key !== this.explained) return;
       this.help.hidden = description === "" && troubles.length === 0;
-      const said = troubles.map((row) => h("p", { class: `trouble ${row.level}` }, icon(LEVEL_ICONS[row.level], `level-${row.level}`), troubleText(row)));
-      this.help.replaceChildren(h("strong", {}, name), ...said, h("p", {}, description));
+      const problems = troubles.map((row) => h("p", { class: `trouble ${row.level}` }, icon(LEVEL_ICONS[row.level], `level-${row.level}`), troubleText(row)));
+      this.help.replaceChildren(h("strong", {}, name), ...problems, h("p", {}, description));
     });
   }
 
-  /** Shows the description of a display, and its problems before that. */
+  /** Shows the problems of a display, followed by its description. */
   private explainDisplay(display: DisplayState): void {
-    this.explain(display.name, describe(display), display.troubles);
+    this.explain(display.name, describe(display), display.problems);
   }
 
   private selectLink(key: string): void {
     const found = linkOfKey(this.session, key);
     const { selected } = this.session.selection;
-    // A row that was revealed because its link is selected must not end the selection of others.
+    // Revealing the row of a selected link must not clear the selection of other links.
     if (found && selected?.display === found.display.id && selected.link.name === found.link) return;
     const link = found && this.session.robots.get(found.display.id)?.links.find((each) => each.name === found.link);
     if (found && link) this.session.selection.select({ display: found.display.id, link });
@@ -206,12 +206,12 @@ export class DisplaysPanel implements Panel {
   private showSelection(): void {
     const { selected } = this.session.selection;
     const display = selected && this.session.displays.find(selected.display);
-    const path = display && linkPath(display, this.session, selected.link.name);
+    const path = display && linkRowPath(display, this.session, selected.link.name);
     if (path) this.tree.reveal(path);
   }
 }
 
-/** The keys of the rows from the outermost group to a display. */
+/** Returns the keys of the rows from the outermost group to a display. */
 function pathTo(display: DisplayState): string[] {
   return [...(display.group ? pathTo(display.group) : []), display.id];
 }

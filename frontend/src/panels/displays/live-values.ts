@@ -3,16 +3,16 @@ import type { TreeView } from "../../tree/tree-view";
 
 const INTERVAL_MS = 100;
 
-/** Keeps the rows of a tree current whose values are read from what is drawn, a few times a second while any is in view. */
+/** Updates the rows whose values follow the scene, a few times a second while any of them is visible. */
 export function followLiveValues(tree: TreeView, session: Session): void {
   let timer = 0;
-  const soon = (): void => {
+  const schedule = (): void => {
     if (timer !== 0 || !tree.showsLive) return;
     timer = window.setTimeout(() => {
       timer = 0;
       tree.showLive();
     }, INTERVAL_MS);
   };
-  session.frames.posesChanged.on(soon);
-  session.data.received.on(soon);
+  session.frames.posesChanged.on(schedule);
+  session.data.received.on(schedule);
 }

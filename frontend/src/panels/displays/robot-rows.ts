@@ -14,7 +14,7 @@ const TREE = "Expand Tree";
 const LINK_DETAILS = "Expand Link Details";
 const JOINT_DETAILS = "Expand Joint Details";
 
-/** RViz's styles: what the row above all is called, whether it is a tree, and what it has rows for. */
+/** RViz's Link Tree Styles: the title of the top row, whether it is a tree, and whether it lists links and joints. */
 const STYLES: Readonly<Record<string, { title: string; tree: boolean; links: boolean; joints: boolean }>> = {
   "Links in Alphabetic Order": { title: "Links", tree: false, links: true, joints: false },
   "Joints in Alphabetic Order": { title: "Joints", tree: false, links: false, joints: true },
@@ -23,8 +23,8 @@ const STYLES: Readonly<Record<string, { title: string; tree: boolean; links: boo
 };
 
 /**
- * The rows of a display. Most stand as they were sent; those of a RobotModel's links and joints come in two lists and
- * are arranged by its Link Tree Style.
+ * Returns the rows of a display. Most are shown as the server sent them; the links and joints of a RobotModel arrive as
+ * two lists and are arranged by its Link Tree Style.
  */
 export function displayRows(display: DisplayState, session: Session, set: SetValue): TreeItem[] {
   const robot = session.robots.get(display.id);
@@ -34,17 +34,17 @@ export function displayRows(display: DisplayState, session: Session, set: SetVal
   });
 }
 
-/** The keys of a link's row, or of the joint's that it hangs on, and of those above it; null when it has none. */
-export function linkPath(display: DisplayState, session: Session, link: string): string[] | null {
+/** Returns the keys of a link's row, or of its joint's row, and of the rows above; null if it has none. */
+export function linkRowPath(display: DisplayState, session: Session, link: string): string[] | null {
   const robot = session.robots.get(display.id);
   if (!robot || !display.rows.find("Links")) return null;
   return new RobotTree(display, session, robot, () => undefined).pathTo(link);
 }
 
-/** The display and link whose row has this key. */
+/** Returns the display and link whose row has this key. */
 export function linkOfKey(session: Session, key: string): { display: DisplayState; link: string } | null {
   for (const display of session.displays.displays) {
-    const node = display.rows.find("Links")?.children.find((each) => each.id === key && each.details === "link");
+    const node = display.rows.find("Links")?.children.find((child) => child.id === key && child.details === "link");
     if (node) return { display, link: node.name };
   }
   return null;
@@ -70,7 +70,7 @@ function withDetails(node: PropertyNode, display: DisplayState, session: Session
   };
 }
 
-/** The rows of one robot, arranged. */
+/** The rows of one robot, arranged by its style. */
 class RobotTree {
   private readonly options: PropertyNode | undefined;
   private readonly style: { title: string; tree: boolean; links: boolean; joints: boolean };
@@ -98,7 +98,7 @@ class RobotTree {
     }
   }
 
-  /** The row above all. */
+  /** The top row. */
   get top(): TreeItem {
     const { options, style } = this;
     const shown = (node: PropertyNode): boolean =>
@@ -153,7 +153,7 @@ class RobotTree {
     return [this.row(node, () => this.linkRow(joint.child))];
   }
 
-  /** In a tree, what is known of a link or joint is below a row of its own. */
+  /** Returns the row of a link or joint. In a tree, its details are below a row of their own. */
   private row(node: PropertyNode, below: () => TreeItem[]): TreeItem {
     const { rows } = this.display;
     const { tree } = this.style;

@@ -2,8 +2,8 @@ import type { AddPanelOptions, Direction, DockviewApi } from "dockview";
 import { strings } from "../../strings";
 import type { PanelId } from "../panel";
 
-interface Home {
-  /** Where the panel goes: beside the first of these that is open. */
+interface Placement {
+  /** Where the panel opens: next to the first of these panels that is open. */
   beside: readonly (readonly [PanelId, Direction])[];
   width?: number;
   height?: number;
@@ -11,23 +11,23 @@ interface Home {
 }
 
 /** Right of the scene, above the panels there. */
-const RIGHT: Home["beside"] = [
+const RIGHT: Placement["beside"] = [
   ["joints", "above"],
   ["diagnostics", "above"],
   ["scene", "right"],
 ];
 
-/** What is wide and read line by line shares one place below the scene. */
+/** Wide panels that are read line by line share one place below the scene. */
 const BOTTOM: readonly PanelId[] = ["source", "diagram", "joint-table", "editing", "plot", "topics", "graph", "parameters", "log"];
-const BELOW: Home = { beside: [...BOTTOM.map((id) => [id, "within"] as const), ["scene", "below"]], height: 300 };
-/** The part of the dock's height that a panel asks for at most. */
-const MOST_HEIGHT = 0.4;
+const BELOW: Placement = { beside: [...BOTTOM.map((id) => [id, "within"] as const), ["scene", "below"]], height: 300 };
+/** The largest share of the dock's height that a panel requests. */
+const MAX_HEIGHT_SHARE = 0.4;
 
 /** Pixels: one line, without a tab. */
 export const TIME_HEIGHT = 32;
 
-/** RViz's places: Displays left, the scene in the middle, everything else right. */
-const HOMES: Readonly<Record<PanelId, Home>> = {
+/** RViz's places: Displays on the left, the scene in the middle, everything else on the right. */
+const PLACEMENTS: Readonly<Record<PanelId, Placement>> = {
   scene: { beside: [] },
   displays: { beside: [["links", "within"], ["scene", "left"]], width: 320 },
   views: {
@@ -117,63 +117,66 @@ const HOMES: Readonly<Record<PanelId, Home>> = {
   },
 };
 
-/** Up to this width, in pixels, there is no room for panels beside the scene. */
+/** Pixels; in a window up to this width there is no room for panels beside the scene. */
 const NARROW = 900;
-/** As wide as this panels have the widths that they would like; below it somewhat less. */
+/** Pixels; from this width panels have their preferred widths, below it somewhat less. */
 const ROOMY = 1280;
-const LEAST_SHARE = 0.7;
+const MIN_WIDTH_SHARE = 0.7;
 
-/** Of the panels that share a group there, those in front when they open: the displays, and the panel that the page was opened for. */
+/**
+ * In windows where panels share a group, those that open in front: the displays, and the panel that the page was opened
+ * for.
+ */
 const IN_FRONT: readonly PanelId[] = ["displays", "world", "comparison"];
 
-/** A phone that is held across, where the status bar is left out, too. */
+/** A phone in landscape, where the status bar is hidden, too. */
 const LOW = "(max-height: 480px) and (max-width: 1000px) and (min-aspect-ratio: 3/2)";
-/** The part of such a window that panels have, and its least and most in pixels. */
+/** The share of such a window that panels get, and their minimum and maximum width in pixels. */
 const [LOW_SHARE, LOW_LEAST, LOW_MOST] = [0.4, 270, 340];
 
-/** The form of a window: with room beside the scene, with all panels below it, or, where it is low, with all beside it. */
+/** The form of a window: "wide" has room beside the scene, "narrow" shows all panels below it, "low" all beside it. */
 export type Form = "wide" | "narrow" | "low";
 
 export function formOf(api: DockviewApi): Form {
   return matchMedia(LOW).matches ? "low" : api.width <= NARROW ? "narrow" : "wide";
 }
 
-/** Of all the window the scene has at least this much there, besides the line of its tools. */
+/** In a narrow window the scene gets at least this share of the height, without the row of its tools. */
 const SCENE_SHARE = 0.5;
 const TOOLS_HEIGHT = 34;
-/** In a window narrower than this the last minutes, which come later, are a line of the foot by themselves. */
+/** Pixels; in a narrower window the history, which arrives later, is a row of its own in the foot. */
 const FOOT_WRAPS = 640;
 const FOOT_LINE = 30;
-const MOST_BELOW = 0.45;
+const MAX_BELOW_SHARE = 0.45;
 
-/** The place of a panel on a phone: the scene has one group with everything else below it. */
-function narrowHome(api: DockviewApi, id: PanelId): Home {
-  if (id === "scene") return HOMES.scene;
-  const others = (Object.keys(HOMES) as PanelId[]).filter((each) => each !== "scene" && each !== id);
-  const beside: Home["beside"] = [...others.map((each) => [each, "within"] as const), ["scene", "below"]];
+/** Returns the place of a panel on a phone: one group below the scene has all other panels. */
+function narrowHome(api: DockviewApi, id: PanelId): Placement {
+  if (id === "scene") return PLACEMENTS.scene;
+  const others = (Object.keys(PLACEMENTS) as PanelId[]).filter((each) => each !== "scene" && each !== id);
+  const beside: Placement["beside"] = [...others.map((other) => [other, "within"] as const), ["scene", "below"]];
   const lines = TOOLS_HEIGHT + (window.innerWidth < FOOT_WRAPS ? FOOT_LINE : 0);
   const left = api.height - lines - SCENE_SHARE * window.innerHeight;
-  return { beside, height: Math.round(Math.min(left, api.height * MOST_BELOW)), inactive: !IN_FRONT.includes(id) };
+  return { beside, height: Math.round(Math.min(left, api.height * MAX_BELOW_SHARE)), inactive: !IN_FRONT.includes(id) };
 }
 
-/** The place of a panel on a phone held across: the scene has one group with everything else beside it. */
-function lowHome(api: DockviewApi, id: PanelId): Home {
+/** Returns the place of a panel on a phone in landscape: one group beside the scene has all other panels. */
+function lowHome(api: DockviewApi, id: PanelId): Placement {
   const { beside: near, inactive = false } = narrowHome(api, id);
-  const beside: Home["beside"] = near.map(([other, where]) => [other, where === "below" ? "right" : where]);
+  const beside: Placement["beside"] = near.map(([other, where]) => [other, where === "below" ? "right" : where]);
   return { beside, inactive, width: Math.round(Math.min(LOW_MOST, Math.max(LOW_LEAST, api.width * LOW_SHARE))) };
 }
 
-function wideHome(api: DockviewApi, id: PanelId): Home {
-  const home = { ...HOMES[id] };
-  if (home.width !== undefined) home.width = Math.round(home.width * Math.max(LEAST_SHARE, Math.min(1, api.width / ROOMY)));
-  if (home.height !== undefined) home.height = Math.min(home.height, Math.round(api.height * MOST_HEIGHT));
+function wideHome(api: DockviewApi, id: PanelId): Placement {
+  const home = { ...PLACEMENTS[id] };
+  if (home.width !== undefined) home.width = Math.round(home.width * Math.max(MIN_WIDTH_SHARE, Math.min(1, api.width / ROOMY)));
+  if (home.height !== undefined) home.height = Math.min(home.height, Math.round(api.height * MAX_HEIGHT_SHARE));
   return home;
 }
 
-/** The order in which open panels move to their usual places. */
-export const USUAL: readonly PanelId[] = ["scene", "time", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "transformation", ...BOTTOM];
+/** The order in which open panels move to their default places. */
+export const DEFAULT_ORDER: readonly PanelId[] = ["scene", "time", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "transformation", ...BOTTOM];
 
-/** Adds panels at their usual places. */
+/** Adds panels at their default places. */
 export function addPanels(api: DockviewApi, ids: readonly PanelId[]): void {
   const homeIn = { wide: wideHome, narrow: narrowHome, low: lowHome }[formOf(api)];
   for (const id of ids) {
@@ -182,7 +185,7 @@ export function addPanels(api: DockviewApi, ids: readonly PanelId[]): void {
     const options: AddPanelOptions = { id, component: id, tabComponent: id, title: strings.panels[id] };
     if (width !== undefined) options.initialWidth = width;
     if (height !== undefined) options.initialHeight = height;
-    // Alone in its group a panel must be active, or the group stays empty.
+    // A panel that is alone in its group must be active, or the group stays empty.
     if (inactive !== undefined && found?.[1] === "within") options.inactive = inactive;
     const position = found && { referencePanel: found[0], direction: found[1] };
     api.addPanel(position ? { ...options, floating: false, position } : options);

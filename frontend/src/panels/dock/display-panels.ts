@@ -6,17 +6,20 @@ import { PanelTab } from "./panel-tab";
 
 const PREFIX = "display:";
 const HEIGHT = 220;
-/** The part of the window's height that is a panel's at most. */
-const SHARE = 0.3;
-/** So many panels are put below the Displays panel; the next ones become tabs of these. */
-const MOST_BESIDE = 2;
-/** In a narrow window of this width, in pixels, the first of them stands beside the scene and has this part of the width. */
-const LEAST_SPLIT = 600;
+/** The largest share of the window's height for a panel. */
+const MAX_HEIGHT_SHARE = 0.3;
+/** The number of panels below the Displays panel; further ones become tabs of these. */
+const MAX_BELOW = 2;
+/**
+ * Pixels; in a narrow window of at least this width, the first panel opens beside the scene with this share of the
+ * width.
+ */
+const MIN_SPLIT_WIDTH = 600;
 const SPLIT = 0.42;
-/** In a window lower than this, in pixels, only one of them. */
+/** Pixels; in a lower window, only one panel opens below the Displays panel. */
 const LOW = 700;
 
-interface Home {
+interface Placement {
   beside: string | undefined;
   direction: Direction;
   width?: number;
@@ -24,16 +27,16 @@ interface Home {
   inactive?: boolean;
 }
 
-/** The panels of displays within the dock. A restored arrangement keeps their places until their displays come. */
+/** The panels of displays within the dock. A restored arrangement reserves their places until their displays arrive. */
 export class DisplayPanels implements PanelHost {
   private readonly hosts = new Map<string, HTMLElement>();
-  private readonly offered = new Map<string, DisplayPanel>();
+  private readonly panels = new Map<string, DisplayPanel>();
 
-  /** `api` is asked for when it is needed: the dock makes contents while it is being made. */
+  /** `api` is a function because the dock creates contents while it is itself being created. */
   constructor(private readonly api: () => DockviewApi) {}
 
   offer(panel: DisplayPanel): void {
-    this.offered.set(panel.key, panel);
+    this.panels.set(panel.key, panel);
     if (this.api().getPanel(panel.key)) {
       this.host(panel.key).replaceChildren(panel.element);
       this.retitle(panel.key, panel.title);
@@ -43,7 +46,7 @@ export class DisplayPanels implements PanelHost {
   }
 
   withdraw(key: string): void {
-    this.offered.delete(key);
+    this.panels.delete(key);
     this.remove(key);
   }
 
@@ -51,32 +54,32 @@ export class DisplayPanels implements PanelHost {
     this.api().getPanel(key)?.api.setTitle(title);
   }
 
-  /** The displays are these: panels of others go. */
-  keep(displays: readonly string[]): void {
+  /** Removes the panels of displays that are not in the list. */
+  prune(displays: readonly string[]): void {
     const keys = new Set(displays.map((id) => PREFIX + id));
     for (const { id } of [...this.api().panels]) if (id.startsWith(PREFIX) && !keys.has(id)) this.withdraw(id);
   }
 
-  /** Puts all panels back after the arrangement was cleared. */
+  /** Adds all panels again after the arrangement was cleared. */
   restore(): void {
-    for (const panel of this.offered.values()) if (!this.api().getPanel(panel.key)) this.add(panel);
+    for (const panel of this.panels.values()) if (!this.api().getPanel(panel.key)) this.add(panel);
   }
 
-  /** The content of a panel for the dock; null for a panel that belongs to no display. */
+  /** Returns the content of a panel for the dock; null for a panel that belongs to no display. */
   content(name: string): IContentRenderer | null {
     if (!name.startsWith(PREFIX)) return null;
     return { element: this.host(name), init: () => undefined };
   }
 
-  /** The tab of a panel; null for a panel that belongs to no display. */
+  /** Returns the tab of a panel; null for a panel that belongs to no display. */
   tab(key: string): PanelTab | null {
     if (!key.startsWith(PREFIX)) return null;
     const close = (): void => {
-      const panel = this.offered.get(key);
+      const panel = this.panels.get(key);
       if (panel) panel.closed();
       else this.remove(key);
     };
-    return new PanelTab(this.offered.get(key)?.icon ?? "image", true, close);
+    return new PanelTab(this.panels.get(key)?.icon ?? "image", true, close);
   }
 
   private add(panel: DisplayPanel): void {
@@ -93,26 +96,26 @@ export class DisplayPanels implements PanelHost {
     const before = others.map(({ group }) => ({ group, height: group.height }));
     const { group } = this.api().addPanel(position ? { ...options, floating: false, position } : options);
     if (height === undefined) return;
-    // The dock takes the room from the others.
+    // The dock takes the space from the other panels: restore their heights.
     for (const each of [...before, { group, height }]) each.group.api.setSize({ height: each.height });
   }
 
-  /** The place of a new panel, after `count` others. */
-  private home({ instead }: DisplayPanel, last: string | undefined, count: number): Home {
+  /** Returns the place of a new panel, after `count` others. */
+  private home({ replacesScene }: DisplayPanel, last: string | undefined, count: number): Placement {
     const api = this.api();
     const form = formOf(api);
     const narrow = form !== "wide";
-    // Where one group has everything, a new image does not hide what the user works with.
-    const shares = form === "low" || (narrow && api.width < LEAST_SPLIT);
-    const most = narrow || api.height < LOW ? 1 : MOST_BESIDE;
-    if (last !== undefined && instead && count < MOST_BESIDE) return { beside: last, direction: "right" };
-    if (last !== undefined && count >= most) return { beside: last, direction: "within", inactive: shares && !instead };
+    // Where all panels share a group, a new image must not hide the panel that the user works with.
+    const shares = form === "low" || (narrow && api.width < MIN_SPLIT_WIDTH);
+    const most = narrow || api.height < LOW ? 1 : MAX_BELOW;
+    if (last !== undefined && replacesScene && count < MAX_BELOW) return { beside: last, direction: "right" };
+    if (last !== undefined && count >= most) return { beside: last, direction: "within", inactive: shares && !replacesScene };
     const scene = api.getPanel("scene") && "scene";
-    if (instead && scene) return { beside: scene, direction: "within" };
+    if (replacesScene && scene) return { beside: scene, direction: "within" };
     if (narrow && !shares && scene) return { beside: scene, direction: "right", width: Math.round(api.width * SPLIT) };
     const beside = api.getPanel("displays") ? "displays" : scene;
     if (shares) return { beside, direction: "within", inactive: beside !== undefined };
-    return { beside, direction: "below", height: Math.min(HEIGHT, Math.round(api.height * SHARE)) };
+    return { beside, direction: "below", height: Math.min(HEIGHT, Math.round(api.height * MAX_HEIGHT_SHARE)) };
   }
 
   private remove(key: string): void {

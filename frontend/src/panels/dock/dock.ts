@@ -5,25 +5,25 @@ import type { TextStorage } from "../../storage";
 import { strings } from "../../strings";
 import type { Panel, PanelId } from "../panel";
 import { ColumnWidths } from "./column-widths";
-import { addPanels, formOf, USUAL, type Form } from "./default-layout";
+import { addPanels, formOf, DEFAULT_ORDER, type Form } from "./default-layout";
 import { DisplayPanels } from "./display-panels";
 import { FILE_PANELS } from "./file-panels";
 import { FrontTabs } from "./front-tabs";
 import type { Layout, Layouts } from "./layouts";
 import { PanelTab } from "./panel-tab";
 import { SceneTab } from "./scene-tab";
-import { takeTabKeys } from "./tab-keys";
+import { bindTabKeys } from "./tab-keys";
 import { TimeStrip } from "./time-strip";
 
-/** The dockable panels; their arrangement is remembered by the browser, for each file. */
+/** The dockable panels; the browser stores their arrangement for each file. */
 export class Dock {
   /** A panel was opened, closed, moved or brought to the front. */
   readonly changed = new Signal();
-  /** The arrangement changed: panels must be titled, and those that depend on something opened or closed. */
-  readonly rearranged = new Signal();
-  /** Which of its panels the file shows, for `reset`; null when it does not say. */
-  listed: readonly PanelName[] | null = null;
-  /** The file that the arrangement is kept for; null until one is known. */
+  /** The arrangement was replaced: titles must be set again, and panels that depend on data opened or closed. */
+  readonly arrangementReplaced = new Signal();
+  /** The panels that the file shows, for `reset`; null if it does not specify them. */
+  panelsOfFile: readonly PanelName[] | null = null;
+  /** The file for which the arrangement is stored; null until one is known. */
   file: string | null = null;
   /** The panels of displays. */
   readonly displayPanels = new DisplayPanels(() => this.api);
@@ -34,7 +34,7 @@ export class Dock {
   private readonly frontTabs: FrontTabs;
   private readonly panels: ReadonlyMap<string, Panel>;
   private readonly tabs = new Map<string, PanelTab>();
-  /** The numbers behind titles, of panels that are closed, too. */
+  /** The numbers in the titles, also of closed panels. */
   private readonly counts = new Map<PanelId, number>();
   private form: Form;
 
@@ -57,19 +57,19 @@ export class Dock {
     this.strip = new TimeStrip(this.api, storage);
     this.sceneTab = new SceneTab(this.api);
     this.frontTabs = new FrontTabs(this.api);
-    takeTabKeys(parent, (id) => this.tabs.get(id));
-    // Panels get their sizes when they are added; the dock's own observer would tell its size only later.
+    bindTabKeys(parent, (id) => this.tabs.get(id));
+    // Panels get their sizes when they are added; the dock's own observer would report its size too late.
     this.api.layout(parent.clientWidth, parent.clientHeight);
     this.form = formOf(this.api);
-    // Most often the file is the one of the last time: then nothing moves when that is known.
+    // Usually the file is the one of the last visit, and nothing moves once that is known.
     const latest = layouts.latest(this.form);
     if (latest && this.restore(latest)) this.file = latest.file;
     else this.reset();
-    this.followLone();
-    this.widths.take();
+    this.hideLoneTabs();
+    this.widths.remember();
     this.api.onDidLayoutChange(() => {
-      this.followLone();
-      this.widths.follow();
+      this.hideLoneTabs();
+      this.widths.restoreAfterChange();
       this.remember();
       this.changed.emit();
     });
@@ -88,11 +88,11 @@ export class Dock {
     return this.api.getPanel(id) !== undefined;
   }
 
-  /** Opens a panel where it belongs, or brings it to the front. */
+  /** Opens a panel at its place, or brings it to the front. */
   open(id: PanelId): void {
     this.add(id);
     this.api.getPanel(id)?.api.setActive();
-    if (id === "time" && this.strip.isThere) this.strip.unfold(true);
+    if (id === "time" && this.strip.exists) this.strip.setUnfolded(true);
   }
 
   close(id: PanelId): void {
@@ -100,7 +100,7 @@ export class Dock {
     if (panel) this.api.removePanel(panel);
   }
 
-  /** A number behind a panel's title; 0 takes it away. */
+  /** Shows a number after a panel's title; 0 removes it. */
   setCount(id: PanelId, count: number): void {
     this.counts.set(id, count);
     this.retitle();
@@ -109,7 +109,7 @@ export class Dock {
   private retitle(): void {
     const wrong = this.api.panels.filter(({ id, title }) => this.panels.has(id) && title !== this.titleOf(id));
     for (const { id, api } of wrong) api.setTitle(this.titleOf(id));
-    if (wrong.length > 0) this.frontTabs.follow();
+    if (wrong.length > 0) this.frontTabs.update();
   }
 
   private titleOf(id: string): string {
@@ -117,15 +117,15 @@ export class Dock {
     return count > 0 ? `${title(id)} (${count})` : title(id);
   }
 
-  /** The arrangement of the first visit. */
+  /** Restores the arrangement of the first visit. */
   reset(): void {
     const joints = this.api.getPanel("joints") !== undefined;
     this.build(["scene", "time", "displays", "links", "views", "tool-properties", "selection", "diagnostics", ...(joints ? (["joints"] as const) : [])]);
-    if (this.listed) this.showOnly(this.listed);
-    this.rearranged.emit();
+    if (this.panelsOfFile) this.showOnly(this.panelsOfFile);
+    this.arrangementReplaced.emit();
   }
 
-  /** Shows the arrangement that the browser keeps for a file; false when it keeps none. */
+  /** Shows the arrangement that the browser stores for a file; returns false if there is none. */
   arrange(file: string): boolean {
     const layout = this.layouts.find(file, this.form);
     if (!layout) return false;
@@ -133,26 +133,26 @@ export class Dock {
       this.reset();
       return false;
     }
-    this.followLone();
+    this.hideLoneTabs();
     this.displayPanels.restore();
-    this.widths.take();
-    this.rearranged.emit();
+    this.widths.remember();
+    this.arrangementReplaced.emit();
     return true;
   }
 
-  /** Keeps the arrangement for a file from now on. */
-  keepFor(file: string): void {
+  /** Stores the arrangement for this file from now on. */
+  storeFor(file: string): void {
     this.file = file;
     this.remember();
   }
 
-  /** Opens these panels, and closes all others that files list. */
+  /** Opens these panels, and closes all others that files can list. */
   showOnly(panels: readonly PanelName[]): void {
     for (const id of FILE_PANELS) {
       if (panels.includes(id)) this.add(id);
       else this.close(id);
     }
-    this.widths.follow();
+    this.widths.restoreAfterChange();
   }
 
   private add(id: PanelId): void {
@@ -165,24 +165,26 @@ export class Dock {
     this.api.clear();
     addPanels(this.api, this.form !== "wide" ? [...ids.filter((id) => id !== "time"), ...ids.filter((id) => id === "time")] : ids);
     this.retitle();
-    this.followLone();
+    this.hideLoneTabs();
     this.displayPanels.restore();
-    this.widths.take();
+    this.widths.remember();
   }
 
-  /** Hides the tabs of panels that are alone in their group and need none. */
-  private followLone(): void {
-    this.strip.follow();
-    this.sceneTab.follow(this.form !== "wide");
-    this.frontTabs.follow();
+  /** Hides the tabs of panels that are alone in their group and need no tab. */
+  private hideLoneTabs(): void {
+    this.strip.update();
+    this.sceneTab.update(this.form !== "wide");
+    this.frontTabs.update();
   }
 
-  /** The window has another form: the same panels, as they were in such a window or where they belong. */
+  /**
+   * Shows the same panels after the window took another form, as they were in such a window or at their default places.
+   */
   private changeForm(): void {
     this.form = formOf(this.api);
     if (this.file !== null && this.arrange(this.file)) return;
-    this.build(USUAL.filter((id) => this.isOpen(id)));
-    this.rearranged.emit();
+    this.build(DEFAULT_ORDER.filter((id) => this.isOpen(id)));
+    this.arrangementReplaced.emit();
   }
 
   private tab(id: string): PanelTab {
@@ -203,14 +205,14 @@ export class Dock {
       this.retitle();
       return this.isOpen("scene");
     } catch {
-      // A layout of another version of the page: start over.
+      // The layout is from another version of the page: start over.
       this.api.clear();
       return false;
     }
   }
 
   private remember(): void {
-    if (this.file !== null) this.layouts.keep({ file: this.file, form: this.form, arrangement: this.api.toJSON() });
+    if (this.file !== null) this.layouts.store({ file: this.file, form: this.form, arrangement: this.api.toJSON() });
   }
 }
 

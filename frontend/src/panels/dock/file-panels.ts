@@ -3,7 +3,7 @@ import type { Configuration, PanelName, Panels } from "../../protocol";
 import type { Signal } from "../../signal";
 import type { PanelId } from "../panel";
 
-/** The panels that files know of. */
+/** The panels that files can list. */
 export const FILE_PANELS: readonly PanelName[] = [
   "displays",
   "selection",
@@ -18,104 +18,104 @@ export const FILE_PANELS: readonly PanelName[] = [
 export interface Arrangement {
   readonly changed: Signal;
   readonly file: string | null;
-  listed: readonly PanelName[] | null;
+  panelsOfFile: readonly PanelName[] | null;
   isOpen(id: PanelId): boolean;
-  /** Shows what the browser keeps for a file; false when that is nothing. */
+  /** Shows the arrangement that the browser stores for a file; returns false if there is none. */
   arrange(file: string): boolean;
-  keepFor(file: string): void;
+  storeFor(file: string): void;
   open(id: PanelId): void;
   showOnly(panels: readonly PanelName[]): void;
 }
 
 /**
- * Keeps the open panels and the file's in step.
+ * Synchronizes the open panels with those of the file.
  *
- * A page that opens has the arrangement that the browser keeps for the file. Where there is none, and whenever another
- * configuration takes the place of the one before, the file specifies its open panels. The panels that the user opens and
- * closes afterwards are kept by the browser and sent to the server, which writes them into the file.
+ * A page that opens uses the arrangement that the browser stores for the file. Where there is none, and whenever
+ * another configuration replaces the current one, the file specifies the open panels. The browser stores the panels
+ * that the user opens and closes afterwards, and the server, which receives them, writes them into the file.
  */
 export class FilePanels {
-  private told: Panels | null = null;
+  private panelsMessage: Panels | null = null;
   private configuration: Configuration | null = null;
-  /** The number of the configuration that is shown; null after a connection was made, before anything is known. */
-  private shown: number | null = null;
-  /** Which of the file's panels were open when last looked at. */
-  private open: readonly PanelName[] | null = null;
+  /** The number of the configuration shown; null after connecting, until one is known. */
+  private shownNumber: number | null = null;
+  /** The file's panels that were open at the last comparison. */
+  private openBefore: readonly PanelName[] | null = null;
   /** Neither a file nor the browser specifies the arrangement of this page's panels. */
   private unarranged = false;
   private drivable = false;
-  /** The browser keeps no arrangement for the file. */
+  /** Whether the browser stores no arrangement for the file. */
   private isFirstVisit = false;
-  private listens = false;
+  private hasVoice = false;
 
   constructor(
     private readonly connection: Connection,
     private readonly dock: Arrangement,
   ) {
     connection.on("hello", () => {
-      this.told = this.configuration = this.shown = null;
-      this.drivable = this.listens = false;
+      this.panelsMessage = this.configuration = this.shownNumber = null;
+      this.drivable = this.hasVoice = false;
     });
     connection.on("panels", (message) => {
-      this.told = message;
-      this.settle();
+      this.panelsMessage = message;
+      this.apply();
     });
     connection.on("configuration", (message) => {
       this.configuration = message;
-      this.settle();
+      this.apply();
     });
     connection.on("simulation_status", ({ drivable }) => {
       this.drivable = drivable;
-      this.openPad();
+      this.openTeleop();
     });
     connection.on("voice_node", ({ present }) => {
-      this.listens = present;
+      this.hasVoice = present;
       this.openVoice();
     });
     dock.changed.on(() => this.compare());
   }
 
-  /** A simulated robot is there to be driven: the pad is open unless it is known how the panels should be. */
-  private openPad(): void {
+  /** Opens the Teleop panel for a simulated robot that can be driven, unless the arrangement is specified. */
+  private openTeleop(): void {
     if (!this.drivable || !this.unarranged) return;
     this.unarranged = false;
     this.dock.open("teleop");
   }
 
-  /** A robot is there to be talked to, in a file that is seen for the first time. */
+  /** Opens the Voice panel for a robot that listens, if the file is shown for the first time. */
   private openVoice(): void {
-    if (!this.listens || !this.isFirstVisit) return;
+    if (!this.hasVoice || !this.isFirstVisit) return;
     this.isFirstVisit = false;
     this.dock.open("voice");
   }
 
-  /** Follows the configuration as soon as both messages about it have arrived. */
-  private settle(): void {
-    const { told, configuration, dock } = this;
-    if (!told || told.opened !== configuration?.opened) return;
-    const { opened } = told;
-    const file = configuration.path ?? told.origin;
-    if (this.shown === opened) {
-      if (file !== dock.file) dock.keepFor(file); // it was saved under another name
+  /** Applies the configuration once both messages about it have arrived. */
+  private apply(): void {
+    const { panelsMessage, configuration, dock } = this;
+    if (!panelsMessage || panelsMessage.opened !== configuration?.opened) return;
+    const { opened } = panelsMessage;
+    const file = configuration.path ?? panelsMessage.origin;
+    if (this.shownNumber === opened) {
+      if (file !== dock.file) dock.storeFor(file); // it was saved under another name
       return;
     }
-    const isNews = this.shown !== null;
-    this.shown = opened;
-    dock.listed = told.shown;
-    const isKept = file === dock.file || dock.arrange(file);
-    dock.keepFor(file);
-    if (told.shown && (isNews || !isKept)) dock.showOnly(told.shown);
-    this.open = this.openNow;
-    this.unarranged = configuration.path === null && !isKept;
-    this.openPad();
-    this.isFirstVisit = !isKept;
+    const isReplaced = this.shownNumber !== null;
+    this.shownNumber = opened;
+    dock.panelsOfFile = panelsMessage.shown;
+    const isStored = file === dock.file || dock.arrange(file);
+    dock.storeFor(file);
+    if (panelsMessage.shown && (isReplaced || !isStored)) dock.showOnly(panelsMessage.shown);
+    this.openBefore = this.openNow;
+    this.unarranged = configuration.path === null && !isStored;
+    this.openTeleop();
+    this.isFirstVisit = !isStored;
     this.openVoice();
   }
 
   private compare(): void {
     const open = this.openNow;
-    if (this.open === null || String(open) === String(this.open)) return;
-    this.open = open;
+    if (this.openBefore === null || String(open) === String(this.openBefore)) return;
+    this.openBefore = open;
     this.connection.send({ type: "show_panels", shown: open });
   }
 

@@ -2,7 +2,7 @@ import type { SerializedDockview } from "dockview";
 import type { TextStorage } from "../../storage";
 import type { Form } from "./default-layout";
 
-/** An arrangement of panels, the file that it is kept for, and the form of the window that it is of. */
+/** An arrangement of panels, with the file and the form of window that it is stored for. */
 export interface Layout {
   file: string;
   form: Form;
@@ -10,14 +10,14 @@ export interface Layout {
 }
 
 const KEY = "linkwright.layouts.3";
-/** Of more the browser forgets the one that was seen longest ago. */
-const MOST = 12;
+/** The number of stored arrangements; beyond it, the browser drops the one used longest ago. */
+const MAX_LAYOUTS = 12;
 
-/** The arrangements of panels that the browser keeps, for each file one of each form of window. */
+/** The arrangements of panels that the browser stores, one for each file and form of window. */
 export class Layouts {
   constructor(private readonly storage: TextStorage) {}
 
-  /** The arrangement of the file that was seen last in a window of a form. */
+  /** Returns the most recent arrangement for a form of window, of whichever file. */
   latest(form: Form): Layout | null {
     return this.read().find((each) => each.form === form) ?? null;
   }
@@ -26,23 +26,23 @@ export class Layouts {
     return this.read().find((each) => each.file === file && each.form === form) ?? null;
   }
 
-  keep(layout: Layout): void {
-    // Read again each time: another tab may have another file.
+  store(layout: Layout): void {
+    // Read again each time: another tab may have stored another arrangement.
     const others = this.read().filter(({ file, form }) => file !== layout.file || form !== layout.form);
-    this.storage.setItem(KEY, JSON.stringify([layout, ...others].slice(0, MOST)));
+    this.storage.setItem(KEY, JSON.stringify([layout, ...others].slice(0, MAX_LAYOUTS)));
   }
 
   private read(): Layout[] {
     try {
-      const kept: unknown = JSON.parse(this.storage.getItem(KEY) ?? "[]");
-      return Array.isArray(kept) ? kept.filter(isLayout) : [];
+      const stored: unknown = JSON.parse(this.storage.getItem(KEY) ?? "[]");
+      return Array.isArray(stored) ? stored.filter(isLayout) : [];
     } catch {
       return [];
     }
   }
 }
 
-function isLayout(kept: unknown): kept is Layout {
-  const { file, form, arrangement } = (kept ?? {}) as Partial<Layout>;
+function isLayout(value: unknown): value is Layout {
+  const { file, form, arrangement } = (value ?? {}) as Partial<Layout>;
   return typeof file === "string" && typeof form === "string" && typeof arrangement === "object";
 }

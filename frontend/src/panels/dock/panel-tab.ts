@@ -3,7 +3,7 @@ import { h } from "../../dom";
 import { icon, type IconName } from "../../icons";
 import { strings } from "../../strings";
 
-/** A panel's tab: icon, title and, unless the panel must stay, a cross that closes it. */
+/** A panel's tab: icon, title and, if the panel can be closed, a close button. */
 export class PanelTab implements ITabRenderer {
   readonly element = h("div", { class: "panel-tab" });
   private readonly title = h("span", { class: "tab-title" });
@@ -14,7 +14,7 @@ export class PanelTab implements ITabRenderer {
     private readonly onClose: (() => void) | null = null,
   ) {}
 
-  /** Closes the panel, unless it must stay; false then. */
+  /** Closes the panel and returns true; returns false if the panel cannot be closed. */
   close: () => boolean = () => false;
 
   init({ title, api }: TabPartInitParameters): void {
@@ -27,9 +27,9 @@ export class PanelTab implements ITabRenderer {
       else api.close();
       return true;
     };
-    // Within a tab nothing else can take the focus: keyboards close with Delete.
+    // Nothing else within a tab can have the focus: keyboard users close with Delete.
     const cross = h("span", { class: "tab-close", title: strings.closeTab, aria: { hidden: "true" } }, icon("close"));
-    // Pressing it must not start to drag the tab.
+    // Pressing the close button must not start a drag of the tab.
     cross.addEventListener("pointerdown", (event) => event.stopPropagation());
     cross.addEventListener("click", () => this.close());
     this.element.append(cross);

@@ -1,13 +1,13 @@
 import type { DockviewApi, DockviewGroupPanel } from "dockview";
 
-/** Leaves out the tab of the scene in a narrow window, as long as that is alone in its place: the scene has its line. */
+/** Hides the tab of the scene in a narrow window while it is alone in its group; the scene's toolbar remains. */
 export class SceneTab {
   private hidden: DockviewGroupPanel | null = null;
 
   constructor(private readonly api: DockviewApi) {}
 
-  /** The arrangement, or the form of the window, may be another. */
-  follow(narrow: boolean): void {
+  /** Updates the tab after the arrangement or the form of the window may have changed. */
+  update(narrow: boolean): void {
     const group = this.api.getPanel("scene")?.group;
     const alone = narrow && group?.panels.length === 1 ? group : null;
     if (alone === this.hidden) return;

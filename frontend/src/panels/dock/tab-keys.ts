@@ -3,11 +3,11 @@ import type { PanelTab } from "./panel-tab";
 const CLOSE = ["Delete", "Backspace"];
 
 /**
- * Closes panels with Delete on their tabs; the next tab has the focus then.
+ * Binds Delete on a tab to closing its panel; the focus then moves to the next tab.
  *
- * The dock has keys for that itself, which would take away panels that must stay.
+ * The dock's own keys would also close panels that must stay.
  */
-export function takeTabKeys(dock: HTMLElement, tabOf: (panel: string) => PanelTab | undefined): void {
+export function bindTabKeys(dock: HTMLElement, tabOf: (panel: string) => PanelTab | undefined): void {
   dock.addEventListener(
     "keydown",
     (event) => {

@@ -3,16 +3,16 @@ import { Signal } from "../../signal";
 import type { TextStorage } from "../../storage";
 import { TIME_HEIGHT } from "./default-layout";
 
-/** What the dock gives any group. */
-const LEAST_HEIGHT = 100;
+/** Pixels: the dock's default for groups. */
+const MIN_GROUP_HEIGHT = 100;
 const KEY = "linkwright.time-fields";
 
 /**
- * Keeps the Time panel a strip of one line, without a tab, as long as it is alone in its place; nothing of it is seen
- * before the user unfolds it.
+ * Shows the Time panel as a strip of one line without a tab while it is alone in its group; the strip is hidden until
+ * the user unfolds it.
  */
 export class TimeStrip {
-  /** It came, went, or was folded. */
+  /** The strip appeared, disappeared, or was folded or unfolded. */
   readonly changed = new Signal();
   private strip: DockviewGroupPanel | null = null;
   private unfolded: boolean;
@@ -24,8 +24,8 @@ export class TimeStrip {
     this.unfolded = storage.getItem(KEY) === "shown";
   }
 
-  /** Whether there is one, folded or not. */
-  get isThere(): boolean {
+  /** Whether there is a strip, folded or not. */
+  get exists(): boolean {
     return this.strip !== null;
   }
 
@@ -33,25 +33,25 @@ export class TimeStrip {
     return this.unfolded;
   }
 
-  /** Shows its fields, or hides them. */
-  unfold(unfolded: boolean): void {
+  /** Shows or hides the strip. */
+  setUnfolded(unfolded: boolean): void {
     this.unfolded = unfolded;
     this.storage.setItem(KEY, unfolded ? "shown" : "hidden");
     this.show();
     this.changed.emit();
   }
 
-  /** The arrangement may be another. */
-  follow(): void {
+  /** Updates the strip after the arrangement may have changed. */
+  update(): void {
     const group = this.api.getPanel("time")?.group;
     const strip = group?.panels.length === 1 ? group : null;
     if (strip === this.strip) return;
-    // What became a place of several tabs has a bar for them, and room.
+    // A group that now has several tabs needs its tab bar and its usual height again.
     if (this.strip && this.api.groups.includes(this.strip)) {
       this.strip.api.setVisible(true);
       this.strip.header.hidden = false;
       this.strip.element.classList.remove("strip");
-      this.strip.api.setConstraints({ minimumHeight: LEAST_HEIGHT, maximumHeight: Number.MAX_SAFE_INTEGER });
+      this.strip.api.setConstraints({ minimumHeight: MIN_GROUP_HEIGHT, maximumHeight: Number.MAX_SAFE_INTEGER });
     }
     this.strip = strip;
     if (strip) {

@@ -6,17 +6,17 @@ import { strings } from "../../strings";
 import { shortPath } from "../place";
 import { diffLines } from "./diff-lines";
 
-/** How many characters before and after what differs are shown of a long line, and in a low panel. */
+/** The number of characters shown before and after the difference, in a long line or a low panel. */
 const [NEAR_BEFORE, NEAR_AFTER] = [16, 10];
-/** Characters of a line that is shown whole where there is room. */
+/** Up to this number of characters, a line is shown whole if there is room. */
 const LONGEST_WHOLE = 90;
 
-/** The preview of an edit in the files, or why it is refused, with buttons to write and undo it. */
+/** The preview of an edit in the files, or the reason for its refusal, with buttons to write and undo it. */
 export class EditOutcome {
   readonly element: HTMLElement;
   private readonly text = h("div", { class: "edit-text", role: "status", tabIndex: 0 });
   private readonly apply: HTMLButtonElement;
-  private readonly drop: HTMLButtonElement;
+  private readonly discard: HTMLButtonElement;
   private readonly all: HTMLButtonElement;
   private readonly undo: HTMLButtonElement;
   private readonly redo: HTMLButtonElement;
@@ -24,11 +24,11 @@ export class EditOutcome {
   constructor(private readonly editing: EditingState) {
     const words = strings.editing;
     this.apply = button(words.applyHint, () => editing.apply(), "tool framed primary", words.apply);
-    this.drop = button(words.dropHint, () => editing.reset(), "tool framed", words.drop);
+    this.discard = button(words.dropHint, () => editing.reset(), "tool framed", words.drop);
     this.all = button(words.allHint, () => editing.changeAll(), "tool framed", words.all);
     this.undo = button(words.undo, () => editing.undo(), "tool bare", icon("undo"));
     this.redo = button(words.redo, () => editing.redo(), "tool bare", icon("redo"));
-    const bar = h("div", { class: "edit-bar" }, this.apply, this.drop, this.all, h("span", { class: "spacer" }), this.undo, this.redo);
+    const bar = h("div", { class: "edit-bar" }, this.apply, this.discard, this.all, h("span", { class: "spacer" }), this.undo, this.redo);
     this.element = h("div", { class: "edit-outcome" }, this.text, bar);
     editing.changed.on(() => this.show());
     editing.draftChanged.on(() => this.show());
@@ -40,13 +40,13 @@ export class EditOutcome {
     const words = strings.editing;
     const { preview, refusal, isOpen, written } = editing;
     this.apply.disabled = !isOpen || (preview?.files.length ?? 0) === 0;
-    this.drop.disabled = !isOpen;
-    this.all.hidden = !isOpen || preview?.refusal?.code !== "EDIT104" || editing.isTogether;
+    this.discard.disabled = !isOpen;
+    this.all.hidden = !isOpen || preview?.refusal?.code !== "EDIT104" || editing.isChangeOfAll;
     this.undo.disabled = !editing.canUndo;
     this.redo.disabled = !editing.canRedo;
-    if (refusal) this.text.replaceChildren(told(refusal));
-    else if (preview?.refusal) this.text.replaceChildren(told(preview.refusal));
-    else if (preview) this.text.replaceChildren(...also(preview.also), ...preview.files.map(diff));
+    if (refusal) this.text.replaceChildren(refusalElement(refusal));
+    else if (preview?.refusal) this.text.replaceChildren(refusalElement(preview.refusal));
+    else if (preview) this.text.replaceChildren(...alsoElement(preview.also), ...preview.files.map(diff));
     else if (isOpen) this.text.replaceChildren(h("p", { class: "hint" }, words.looking));
     else if (written.length > 0) this.text.replaceChildren(h("p", { class: "hint" }, words.written(written.map((file) => shortPath(file)).join(", "))));
     else this.text.replaceChildren(h("p", { class: "hint" }, words.idle));
@@ -54,7 +54,7 @@ export class EditOutcome {
   }
 }
 
-function also(names: readonly string[]): HTMLElement[] {
+function alsoElement(names: readonly string[]): HTMLElement[] {
   return names.length === 0 ? [] : [h("p", { class: "edit-also" }, strings.editing.also(names.join(", ")))];
 }
 
@@ -64,19 +64,19 @@ function diff({ file, diff: lines }: EditedFile): HTMLElement {
     const kind = kinds[sign] ?? "around";
     if (kind === "at" || kind === "around") return h("span", { class: kind }, `${sign}${before}\n`);
     const [from, to] = [Math.max(0, before.length - NEAR_BEFORE), Math.min(after.length, NEAR_AFTER)];
-    const parts = [far(before.slice(0, from)), before.slice(from), h("mark", {}, changed), after.slice(0, to), far(after.slice(to))];
+    const parts = [distantText(before.slice(0, from)), before.slice(from), h("mark", {}, changed), after.slice(0, to), distantText(after.slice(to))];
     return h("span", { class: kind }, sign, ...parts, "\n");
   });
   const isLong = lines.some((line) => line.length > LONGEST_WHOLE);
   return h("figure", { class: isLong ? "edit-diff long" : "edit-diff" }, h("figcaption", { title: file }, shortPath(file)), h("pre", {}, ...rows));
 }
 
-/** What there is only room for in a panel that is high enough, and where lines are short. */
-function far(text: string): HTMLElement | null {
+/** Returns the distant part of a line, which only a high panel with short lines shows. */
+function distantText(text: string): HTMLElement | null {
   return text === "" ? null : h("span", { class: "far" }, text);
 }
 
-function told({ message, file, line, notes, hints }: DiagnosticItem): HTMLElement {
+function refusalElement({ message, file, line, notes, hints }: DiagnosticItem): HTMLElement {
   const at = (path: string | null, number: number | null): string => (path === null || number === null ? "" : ` (${shortPath(path)}:${number})`);
   return h(
     "div",

@@ -8,17 +8,17 @@ import { strings } from "../../strings";
 import { formatNumber, parseNumber } from "../../tree/numbers";
 import { choice } from "../../widgets/controls";
 import { UnitSwitch } from "../../widgets/unit-switch";
-import { holdWhileSeen } from "../../widgets/when-seen";
+import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { shortPath } from "../place";
 import { EditOutcome } from "./edit-outcome";
 
 /** m */
-const LENGTH_STEPS = [0.001, 0.005, 0.01, 0.05, 0.1] as const;
-/** What an arrow key moves: m, parts of an axis, rad. */
+const LENGTH_STEPS_M = [0.001, 0.005, 0.01, 0.05, 0.1] as const;
+/** The step of an arrow key: m, components of an axis, rad. */
 const [MOVE, TURN_RAD, TURN_DEGREES] = [0.001, 0.01, Math.PI / 180];
 
-/** A field of a number; `isTyped`: the user has not finished typing. */
+/** A number field; `isTyped` while the user has not finished typing. */
 interface NumberInput {
   readonly input: HTMLInputElement;
   readonly value: () => number;
@@ -37,11 +37,11 @@ export class EditingPanel implements Panel {
   private readonly fields = h("div", { class: "editing-fields" });
   private readonly modes = h("div", { class: "segmented", role: "group", aria: { label: strings.editing.handles } });
   private shown: EditablePart | null = null;
-  /** What the fields are of. */
-  private built = "";
+  /** The part and unit for which the fields were built. */
+  private builtKey = "";
   private inputs: NumberInput[] = [];
-  /** What an axis has no use for, which is turned in its joint's frame. */
-  private ofPoses: readonly HTMLElement[] = [];
+  /** The controls that only a pose needs: an axis can only be rotated in its joint's frame. */
+  private poseControls: readonly HTMLElement[] = [];
 
   constructor(private readonly session: Session) {
     const { editing, focus, angles } = session;
@@ -54,12 +54,12 @@ export class EditingPanel implements Panel {
       const link = current && focus.linkOf(current);
       editing.follow(current && typeof link === "string" ? { display: current.display, link } : null);
     };
-    holdWhileSeen(this.element, () => editing.hold(), update);
+    holdWhileVisible(this.element, () => editing.hold(), update);
     focus.changed.on(follow);
     for (const signal of [editing.changed, editing.draftChanged, editing.snapping.changed]) signal.on(update);
     angles.changed.on(() => {
       this.shown = null;
-      this.update(); // at once: what is typed next is meant in the new unit
+      this.update(); // Update immediately: the number typed next is meant in the new unit.
     });
     follow();
     this.update();
@@ -79,7 +79,7 @@ export class EditingPanel implements Panel {
       input.disabled = whyNot !== "";
       if (!isTyped) input.value = formatNumber(value());
     }
-    for (const each of this.ofPoses) each.hidden = chosen?.part === "axis";
+    for (const control of this.poseControls) control.hidden = chosen?.part === "axis";
     this.showModes();
   }
 
@@ -94,14 +94,14 @@ export class EditingPanel implements Panel {
     return row;
   }
 
-  /** The fields of a part, which stay while it does: the user may be typing. */
+  /** Builds the fields of a part, or keeps them if it is the same part: the user may be typing. */
   private build(part: EditablePart | null): void {
     this.shown = part;
     this.place.replaceChildren();
     if (part) this.showPlace(part);
     const built = part ? [part.part, part.name, part.index, this.session.angles.current].join(" ") : "";
-    if (built === this.built) return;
-    this.built = built;
+    if (built === this.builtKey) return;
+    this.builtKey = built;
     this.inputs = [];
     this.fields.replaceChildren(...(part ? this.rows(part) : []));
   }
@@ -110,7 +110,7 @@ export class EditingPanel implements Panel {
     const words = strings.editing;
     const { file, line, written } = part;
     if (file !== "") {
-      const show = (): void => this.session.description.placeAsked.emit({ file, line });
+      const show = (): void => this.session.description.placeRequested.emit({ file, line });
       const text = `${shortPath(file)}:${line}`;
       this.place.append(button(`${file}:${line}`, show, "place", icon("file"), text), h("code", { title: written }, written === "" ? words.notWritten : written));
     }
@@ -131,16 +131,16 @@ export class EditingPanel implements Panel {
       const input = h("input", { class: "field numeric", aria: { label: `${label} ${name}` }, data: { number: `${kind}${i}` } });
       input.type = "text";
       input.inputMode = "decimal";
-      const value = (): number => this.now(kind, i) * this.scale(kind);
+      const value = (): number => this.currentValue(kind, i) * this.scale(kind);
       const made: NumberInput = { input, value, isTyped: false };
       this.inputs.push(made);
-      this.listen(made, kind, i);
+      this.bindInput(made, kind, i);
       return h("label", { class: "editing-number" }, h("span", {}, name), input);
     });
     return h("div", { class: "editing-row" }, h("span", { class: "editing-label" }, label), ...cells, h("span", { class: "unit" }, unit));
   }
 
-  private listen(made: NumberInput, kind: "xyz" | "rpy", index: number): void {
+  private bindInput(made: NumberInput, kind: "xyz" | "rpy", index: number): void {
     const { input, value } = made;
     const show = (): void => {
       made.isTyped = false;
@@ -153,7 +153,7 @@ export class EditingPanel implements Panel {
     };
     const step = (by: number): void => {
       const angle = this.session.angles.current === "deg" ? TURN_DEGREES : TURN_RAD;
-      this.set(kind, index, this.now(kind, index) + by * (kind === "rpy" ? angle : MOVE));
+      this.set(kind, index, this.currentValue(kind, index) + by * (kind === "rpy" ? angle : MOVE));
       show();
     };
     input.addEventListener("input", () => (made.isTyped = true));
@@ -170,7 +170,7 @@ export class EditingPanel implements Panel {
     });
   }
 
-  private now(kind: "xyz" | "rpy", index: number): number {
+  private currentValue(kind: "xyz" | "rpy", index: number): number {
     const { draft, chosen } = this.session.editing;
     return (draft ?? chosen)?.[kind][index] ?? 0;
   }
@@ -179,7 +179,7 @@ export class EditingPanel implements Panel {
     const { editing } = this.session;
     const now = editing.draft ?? editing.chosen;
     if (!now) return;
-    // Degrees that were typed are said by no more digits than they have.
+    // Converting typed degrees must not add digits to the file.
     const rounded = Number(value.toPrecision(12));
     editing.move({ xyz: now.xyz, rpy: now.rpy, [kind]: now[kind].map((old, i) => (i === index ? rounded : old)) });
   }
@@ -194,7 +194,7 @@ export class EditingPanel implements Panel {
     const frame = choice<HandleFrame>(words.frameHint, [["parent", words.parentFrame], ["own", words.ownFrame]], (value) => (editing.frame = value));
     const steps = (values: readonly number[], unit: string): (readonly [string, string])[] => values.map((value) => [String(value), `${value}${unit}`]);
     const { snapping } = editing;
-    const length = choice(strings.modelling.lengthStep, steps(LENGTH_STEPS, " m"), (value) => (snapping.metres = Number(value)));
+    const length = choice(strings.modelling.lengthStep, steps(LENGTH_STEPS_M, " m"), (value) => (snapping.metres = Number(value)));
     const angle = choice(strings.modelling.angleStep, steps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
     const snap = button(words.snap, () => (snapping.enabled = !snapping.enabled), "tool bare", icon("magnet"));
     const show = (): void => {
@@ -206,7 +206,7 @@ export class EditingPanel implements Panel {
     };
     snapping.changed.on(show);
     show();
-    this.ofPoses = [this.modes, frame, length];
+    this.poseControls = [this.modes, frame, length];
     return h("div", { class: "editing-tools" }, this.modes, frame, snap, length, angle, h("span", { class: "spacer" }), new UnitSwitch(angles).element);
   }
 

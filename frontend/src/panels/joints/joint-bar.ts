@@ -4,7 +4,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { UnitSwitch } from "../../widgets/unit-switch";
 
-/** The controls of all joints: Randomize and Center as joint_state_publisher_gui has them, and their unit. */
+/** Returns the controls of all joints: Randomize and Center as in joint_state_publisher_gui, and the unit of angles. */
 export function jointBar({ connection, angles }: Session): HTMLElement {
   const words = strings.joints;
   return h(

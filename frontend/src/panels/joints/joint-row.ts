@@ -6,21 +6,24 @@ import { mimicText } from "../../state/joint-table";
 import { strings } from "../../strings";
 import { clamp, formatFixed, parseNumber } from "../../tree/numbers";
 
-/** After the user's last touch, how long the server's positions wait before they move the slider, ms. */
-const HANDS_OFF_MS = 250;
+/** ms for which positions from the server do not move the slider after the user moved it. */
+const SERVER_DELAY_MS = 250;
 
-/** So much of the end of a name stays in a narrow panel: names of joints that belong together begin alike, and often end in `_joint`. */
-const END = 14;
-/** A name so short is never cut. */
-const SHORT = 10;
+/**
+ * The number of characters at the end of a name that remain visible in a narrow panel: names of related joints begin
+ * alike, and often end in `_joint`.
+ */
+const VISIBLE_END = 14;
+/** Names up to this length are never cut. */
+const UNCUT_LENGTH = 10;
 
-/** A name as what may be cut of it, and its end, which stays. */
-export function halvesOf(name: string): readonly [string, string] {
-  const cut = name.length > SHORT ? name.length - Math.min(END, Math.floor(name.length / 2)) : name.length;
+/** Splits a name into a part that may be cut, and its end, which always remains visible. */
+export function splitName(name: string): readonly [string, string] {
+  const cut = name.length > UNCUT_LENGTH ? name.length - Math.min(VISIBLE_END, Math.floor(name.length / 2)) : name.length;
   return [name.slice(0, cut), name.slice(cut)];
 }
 
-/** A joint of the Joints panel: name, number, slider, limits. */
+/** A joint in the Joints panel: name, number field, slider and limits. */
 export class JointRow {
   readonly element: HTMLElement;
   private readonly slider = h("input", { class: "slider" });
@@ -35,11 +38,11 @@ export class JointRow {
   constructor(
     readonly joint: JointControl,
     private readonly angles: AngleUnits,
-    private readonly moved: (position: number) => void,
+    private readonly onMoved: (position: number) => void,
   ) {
     const follower = joint.mimic !== null;
-    const halves = halvesOf(joint.name).map((part) => h("span", {}, part));
-    // Screen readers have the whole name from slider and field.
+    const halves = splitName(joint.name).map((part) => h("span", {}, part));
+    // Screen readers get the whole name from the slider and the field.
     const name = h("span", { class: "joint-name", title: joint.name, aria: { hidden: "true" } }, ...halves);
     const mimic = follower
       ? h("div", { class: "mimic", title: strings.joints.follows(joint.mimic ?? "") }, icon("link"), this.relation)
@@ -53,7 +56,7 @@ export class JointRow {
     this.slider.disabled = this.field.disabled = follower;
     this.slider.setAttribute("aria-label", joint.name);
     this.field.setAttribute("aria-label", strings.joints.position(joint.name));
-    this.listen();
+    this.bindInputs();
     this.element = h(
       "div",
       { class: follower ? "joint follower" : "joint", data: { joint: joint.name } },
@@ -64,7 +67,7 @@ export class JointRow {
     this.showUnit();
   }
 
-  /** Angles are shown in another unit. */
+  /** Shows the current unit of angles. */
   showUnit(): void {
     const { lower, upper } = this.joint;
     this.unit.textContent = this.unitName;
@@ -74,15 +77,15 @@ export class JointRow {
     this.show();
   }
 
-  /** The server's position; it waits while the user's hand is on the row. */
+  /** Shows a position from the server, except while the user is moving the joint. */
   setPosition(position: number): void {
-    if (this.dragging || performance.now() - this.touchedAt < HANDS_OFF_MS) return;
+    if (this.dragging || performance.now() - this.touchedAt < SERVER_DELAY_MS) return;
     this.position = position;
     this.show();
   }
 
-  private listen(): void {
-    this.slider.addEventListener("input", () => this.take(Number(this.slider.value)));
+  private bindInputs(): void {
+    this.slider.addEventListener("input", () => this.move(Number(this.slider.value)));
     this.slider.addEventListener("pointerdown", () => (this.dragging = true));
     for (const end of ["pointerup", "pointercancel", "blur"]) {
       this.slider.addEventListener(end, () => (this.dragging = false));
@@ -92,8 +95,8 @@ export class JointRow {
     this.field.addEventListener("keydown", (event) => {
       if (event.key === "Enter") this.readField();
       else if (event.key === "Escape") this.show(true);
-      else if (event.key === "ArrowUp") this.take(this.position + this.step);
-      else if (event.key === "ArrowDown") this.take(this.position - this.step);
+      else if (event.key === "ArrowUp") this.move(this.position + this.step);
+      else if (event.key === "ArrowDown") this.move(this.position - this.step);
       else return;
       event.preventDefault();
       event.stopPropagation();
@@ -104,14 +107,14 @@ export class JointRow {
     if (this.field.value === this.format(this.position)) return;
     const value = parseNumber(this.field.value);
     if (value === null) this.show(true);
-    else this.take(value / this.scale);
+    else this.move(value / this.scale);
   }
 
-  private take(position: number): void {
+  private move(position: number): void {
     this.touchedAt = performance.now();
     this.position = clamp(position, this.joint.lower, this.joint.upper);
     this.show(true);
-    this.moved(this.position);
+    this.onMoved(this.position);
   }
 
   private show(force = false): void {
@@ -135,13 +138,13 @@ export class JointRow {
     return this.angles.current === "deg" ? words.degrees : words.radians;
   }
 
-  /** The text of a joint's mimic: `2 × elbow + 0.1 rad`. */
+  /** The relation of a mimic joint to its leading joint: `2 × elbow + 0.1 rad`. */
   private get relationText(): string {
     const { mimic, multiplier, offset } = this.joint;
     return mimic === null ? "" : mimicText(mimic, multiplier, offset * this.scale, this.unitName);
   }
 
-  /** The step of an arrow key in the number field: 1 degree, 0.01 rad, 1 mm. */
+  /** The step of an arrow key in the number field: 1 degree, 0.01 rad or 1 mm. */
   private get step(): number {
     if (this.joint.kind === "prismatic") return 0.001;
     return this.angles.current === "deg" ? Math.PI / 180 : 0.01;

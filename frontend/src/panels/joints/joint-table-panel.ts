@@ -1,15 +1,15 @@
 import { button, coalesced, h } from "../../dom";
 import type { JointDetails } from "../../protocol";
 import type { DescriptionModel } from "../../state/description-model";
-import { cells, COLUMNS, sorted, type Column } from "../../state/joint-table";
+import { cellTexts, COLUMNS, sortJoints, type Column } from "../../state/joint-table";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { UnitSwitch } from "../../widgets/unit-switch";
-import { holdWhileSeen } from "../../widgets/when-seen";
+import { holdWhileVisible } from "../../widgets/visibility";
 import { currentModel } from "../description/current-model";
 import type { Panel } from "../panel";
 
-/** All joints of the robot with what the description says of them. */
+/** A table of all joints of the robot with their properties in the description. */
 export class JointTablePanel implements Panel {
   readonly id = "joint-table";
   readonly icon = "table";
@@ -31,7 +31,7 @@ export class JointTablePanel implements Panel {
     this.element = h("div", { class: "panel" }, bar, this.empty, this.box);
     const { description, focus, angles } = session;
     const update = coalesced(() => this.update());
-    holdWhileSeen(this.element, () => description.hold(), update);
+    holdWhileVisible(this.element, () => description.hold(), update);
     description.arrived.on(update);
     session.robotChanged.on(update);
     angles.changed.on(update);
@@ -48,7 +48,7 @@ export class JointTablePanel implements Panel {
     this.head.replaceChildren(...COLUMNS.map((column) => this.heading(column)));
     this.rows.clear();
     const { order } = this;
-    const shown = order ? sorted(joints, order.column, order.descending) : joints;
+    const shown = order ? sortJoints(joints, order.column, order.descending) : joints;
     this.body.replaceChildren(...shown.map((joint) => this.row(joint)));
     this.mark(false);
   }
@@ -64,7 +64,7 @@ export class JointTablePanel implements Panel {
   }
 
   private row(joint: JointDetails): HTMLElement {
-    const texts = cells(joint, this.session.angles, strings.description);
+    const texts = cellTexts(joint, this.session.angles, strings.description);
     const row = h(
       "tr",
       { tabIndex: 0, data: { joint: joint.name } },
@@ -85,7 +85,7 @@ export class JointTablePanel implements Panel {
     return row;
   }
 
-  /** Three clicks: up, down, the order of the file. */
+  /** Cycles through ascending order, descending order, and the order of the file. */
   private sortBy(column: Column): void {
     if (this.order?.column !== column) this.order = { column, descending: false };
     else this.order = this.order.descending ? null : { column, descending: true };

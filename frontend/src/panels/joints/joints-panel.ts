@@ -7,10 +7,10 @@ import { JointRow } from "./joint-row";
 import { PoseBar } from "./pose-bar";
 import { SweepBar } from "./sweep-bar";
 
-/** From this many joints on a filter helps. */
-const FILTER_FROM = 10;
+/** The number of joints from which on the filter is shown. */
+const MIN_FILTERED = 10;
 
-/** joint_state_publisher_gui's sliders, with named poses and a sweep. */
+/** The sliders of joint_state_publisher_gui, with named poses and a sweep. */
 export class JointsPanel implements Panel {
   readonly id = "joints";
   readonly icon = "joints";
@@ -44,7 +44,7 @@ export class JointsPanel implements Panel {
     const none = this.rows.length === 0;
     if (none) this.list.append(h("p", { class: "empty" }, strings.joints.none));
     this.bars.hidden = none;
-    this.filter.hidden = this.rows.length < FILTER_FROM;
+    this.filter.hidden = this.rows.length < MIN_FILTERED;
     if (this.filter.hidden) this.filter.value = "";
     this.applyFilter();
     this.update();
@@ -59,7 +59,7 @@ export class JointsPanel implements Panel {
   }
 
   private applyFilter(): void {
-    const wanted = this.filter.value.trim().toLowerCase();
-    for (const row of this.rows) row.element.hidden = !row.joint.name.toLowerCase().includes(wanted);
+    const query = this.filter.value.trim().toLowerCase();
+    for (const row of this.rows) row.element.hidden = !row.joint.name.toLowerCase().includes(query);
   }
 }

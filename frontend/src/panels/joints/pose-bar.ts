@@ -1,12 +1,12 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
-import { posesOf, srdfOf, standsAs, type NamedPose } from "../../state/named-poses";
+import { fromSrdf, toSrdf, matchesPose, type NamedPose } from "../../state/named-poses";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { openMenu } from "../../widgets/menu";
 import { saveText } from "../../widgets/save-file";
 
-/** Named poses of the robot: recalled with a click, saved under a name, taken elsewhere as SRDF. */
+/** Named poses of the robot, which can be recalled, saved, and exported and imported as SRDF. */
 export class PoseBar {
   readonly element: HTMLElement;
   private readonly chips = h("div", { class: "pose-chips" });
@@ -26,7 +26,7 @@ export class PoseBar {
     this.picker.type = "file";
     this.picker.accept = ".srdf,.xml,.xacro";
     this.picker.hidden = true;
-    this.picker.addEventListener("change", () => void this.take());
+    this.picker.addEventListener("change", () => void this.importFile());
     const more = button(words.more, () => this.openMore(more), "tool bare", icon("more"));
     more.setAttribute("aria-haspopup", "menu");
     const entry = h(
@@ -51,7 +51,7 @@ export class PoseBar {
   }
 
   private show(): void {
-    this.chips.replaceChildren(...this.session.poses.of(this.robot).map((pose) => this.chip(pose)));
+    this.chips.replaceChildren(...this.session.poses.posesOf(this.robot).map((pose) => this.chip(pose)));
     this.mark();
   }
 
@@ -65,13 +65,13 @@ export class PoseBar {
     );
   }
 
-  /** The poses that the robot is in. */
+  /** Marks the poses that the robot is in. */
   private mark(): void {
     const { poses, joints } = this.session;
-    const known = poses.of(this.robot);
+    const known = poses.posesOf(this.robot);
     this.chips.querySelectorAll<HTMLElement>(".chip").forEach((chip) => {
       const pose = known.find((each) => each.name === chip.dataset["pose"]);
-      chip.classList.toggle("on", pose !== undefined && standsAs(pose, joints.positions));
+      chip.classList.toggle("on", pose !== undefined && matchesPose(pose, joints.positions));
     });
   }
 
@@ -83,8 +83,8 @@ export class PoseBar {
       return;
     }
     const free = controls.filter((joint) => joint.mimic === null);
-    const taken = free.map((joint) => [joint.name, positions[joint.name] ?? joint.zero] as const);
-    this.session.poses.save(this.robot, { name, positions: Object.fromEntries(taken) });
+    const saved = free.map((joint) => [joint.name, positions[joint.name] ?? joint.zero] as const);
+    this.session.poses.save(this.robot, { name, positions: Object.fromEntries(saved) });
     this.name.value = "";
     this.notice.hidden = true;
   }
@@ -98,13 +98,13 @@ export class PoseBar {
   }
 
   private export(): void {
-    saveText(`${this.robot || "robot"}.srdf`, srdfOf(this.robot, this.session.poses.of(this.robot)), "application/xml");
+    saveText(`${this.robot || "robot"}.srdf`, toSrdf(this.robot, this.session.poses.posesOf(this.robot)), "application/xml");
   }
 
-  private async take(): Promise<void> {
+  private async importFile(): Promise<void> {
     const file = this.picker.files?.[0];
     if (!file) return;
-    const poses = posesOf(await file.text());
+    const poses = fromSrdf(await file.text());
     this.picker.value = "";
     this.notice.hidden = poses.length > 0;
     this.notice.textContent = strings.description.poses.nothingFound;

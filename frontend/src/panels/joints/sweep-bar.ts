@@ -5,10 +5,10 @@ import { Sweep, type SweepOrder } from "../../state/sweep";
 import { strings } from "../../strings";
 
 const SPEEDS = [0.25, 0.5, 1, 2, 4] as const;
-/** A page that was away for longer continues where it was. */
+/** The longest step of the sweep: a page that was suspended continues where it was. */
 const LONGEST_STEP_S = 0.1;
 
-/** Moves the joints through their ranges until it is stopped, or the user moves them elsewhere. */
+/** Moves the joints through their ranges until the user stops it or the joints change. */
 export class SweepBar {
   readonly element: HTMLElement;
   private readonly order = h("select", { class: "choice" });
@@ -35,7 +35,7 @@ export class SweepBar {
       h("span", { class: "bar-label", title: words.hint }, words.label),
       this.order,
       this.speed,
-      h("span", { class: "bar-buttons" }, handsOnSwitch(joints), this.start),
+      h("span", { class: "bar-buttons" }, dragSwitch(joints), this.start),
     );
     this.element = h("div", { class: "joint-bar sweep", role: "group", aria: { label: words.label } }, row);
     joints.controlsChanged.on(() => this.end());
@@ -77,16 +77,16 @@ export class SweepBar {
   }
 }
 
-/** Links follow the mouse without Alt; for touch screens, and for those who move a lot. */
-function handsOnSwitch(joints: JointsState): HTMLElement {
+/** Returns the switch for dragging links without Alt, for touch screens and for frequent use. */
+function dragSwitch(joints: JointsState): HTMLElement {
   const toggle = (): void => {
-    joints.handsOn = !joints.handsOn;
+    joints.dragsWithoutAlt = !joints.dragsWithoutAlt;
     show();
   };
   const element = button(strings.description.handsOn, toggle, "tool bare", icon("hand"));
   const show = (): void => {
-    element.classList.toggle("on", joints.handsOn);
-    element.setAttribute("aria-pressed", String(joints.handsOn));
+    element.classList.toggle("on", joints.dragsWithoutAlt);
+    element.setAttribute("aria-pressed", String(joints.dragsWithoutAlt));
   };
   show();
   return element;

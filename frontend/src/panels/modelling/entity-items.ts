@@ -1,14 +1,17 @@
 import type { PropertyValue, WorldEntity } from "../../protocol";
 import type { AngleUnits } from "../../state/angle-unit";
 import type { Modelling } from "../../state/modelling/modelling";
-import { LEAST_SIZE, resized, tidy, type Change } from "../../state/modelling/shapes";
+import { MIN_SIZE, resizeChange, roundNoise, type Change } from "../../state/modelling/shapes";
 import { strings } from "../../strings";
 import type { TreeItem } from "../../tree/tree-item";
 
-/** Roll, pitch and yaw in a pose. */
-const ANGLES = 3;
+/** The index of roll, followed by pitch and yaw, in a pose. */
+const ROLL = 3;
 
-/** The rows of the selection; where several entities differ, the value is empty, and an edit is for all of them. */
+/**
+ * Returns the property rows of the selection. A value that differs among the entities is shown empty; an edit applies
+ * to all of them.
+ */
 export function entityItems(modelling: Modelling, angles: AngleUnits): TreeItem[] {
   const entities = modelling.selectedEntities;
   const [first] = entities;
@@ -20,7 +23,7 @@ export function entityItems(modelling: Modelling, angles: AngleUnits): TreeItem[
   return [
     entities.length === 1 ? nameItem(first, modelling) : note("count", words.several(entities.length)),
     group("position", words.position, poseItems(entities, 0, ["X", "Y", "Z"], 1, edit)),
-    group("rotation", `${words.rotation}, ${angles.current === "deg" ? "°" : "rad"}`, poseItems(entities, ANGLES, ["Roll", "Pitch", "Yaw"], angles.scale("revolute"), edit)),
+    group("rotation", `${words.rotation}, ${angles.current === "deg" ? "°" : "rad"}`, poseItems(entities, ROLL, ["Roll", "Pitch", "Yaw"], angles.scale("revolute"), edit)),
     ...(alike ? [group("size", words.size, sizeItems(entities, edit))] : []),
     ...(models ? [staticItem(entities, edit)] : []),
     ...(entities.every(({ colour }) => colour !== null) ? [colourItem(first, edit)] : []),
@@ -43,9 +46,9 @@ function poseItems(entities: readonly WorldEntity[], from: number, names: readon
   return names.map((name, i) => {
     const values = entities.map(({ pose }) => (pose[from + i] ?? 0) * scale);
     const set = (value: PropertyValue): void => {
-      if (typeof value === "number") edit((entity) => ({ name: entity.name, pose: entity.pose.with(from + i, tidy(value / scale)) }));
+      if (typeof value === "number") edit((entity) => ({ name: entity.name, pose: entity.pose.with(from + i, roundNoise(value / scale)) }));
     };
-    return { key: `pose/${from + i}`, name, kind: "float", value: common(values), description: "", set };
+    return { key: `pose/${from + i}`, name, kind: "float", value: commonValue(values), description: "", set };
   });
 }
 
@@ -54,9 +57,9 @@ function sizeItems(entities: readonly WorldEntity[], edit: Edit): TreeItem[] {
   const names = first?.shape ? strings.modelling.lengths[first.shape] : [];
   return names.map((name, i) => {
     const set = (value: PropertyValue): void => {
-      if (typeof value === "number") edit((entity) => resized(entity, entity.size.with(i, value)));
+      if (typeof value === "number") edit((entity) => resizeChange(entity, entity.size.with(i, value)));
     };
-    return { key: `size/${i}`, name, kind: "float", value: common(entities.map(({ size }) => size[i] ?? 0)), description: "", minimum: LEAST_SIZE, set };
+    return { key: `size/${i}`, name, kind: "float", value: commonValue(entities.map(({ size }) => size[i] ?? 0)), description: "", minimum: MIN_SIZE, set };
   });
 }
 
@@ -68,19 +71,19 @@ function staticItem(entities: readonly WorldEntity[], edit: Edit): TreeItem {
 
 function colourItem({ colour }: WorldEntity, edit: Edit): TreeItem {
   const set = (value: PropertyValue): void => {
-    const rgb = channels(String(value));
+    const rgb = parseChannels(String(value));
     edit((entity) => ({ name: entity.name, colour: [...rgb, entity.colour?.[3] ?? 1] }));
   };
   return { key: "colour", name: strings.modelling.colour, kind: "color", value: hex(colour ?? []), description: "", set };
 }
 
-/** `#rrggbb` of red, green, blue from 0 to 1. */
+/** Returns `#rrggbb` for red, green and blue from 0 to 1. */
 export function hex(colour: readonly number[]): string {
   const channel = (i: number): string => Math.round(Math.max(0, Math.min(1, colour[i] ?? 0)) * 255).toString(16).padStart(2, "0");
   return `#${channel(0)}${channel(1)}${channel(2)}`;
 }
 
-function channels(text: string): number[] {
+function parseChannels(text: string): number[] {
   return [1, 3, 5].map((at) => Math.round((parseInt(text.slice(at, at + 2), 16) / 255) * 1e4) / 1e4);
 }
 
@@ -92,8 +95,8 @@ function note(key: string, name: string, value = ""): TreeItem {
   return { key, name, kind: "group", value, description: "", strong: value === "" };
 }
 
-/** The one value that all have; null where they differ. */
-function common(values: readonly number[]): number | null {
+/** Returns the value that all have in common; null if they differ. */
+function commonValue(values: readonly number[]): number | null {
   const [first = null] = values;
   return values.every((value) => value === first) ? first : null;
 }

@@ -15,12 +15,12 @@ const ICONS: Readonly<Record<Shape, IconName>> = {
   ramp: "shapeRamp",
 };
 
-/** All entities in the world, by name; several can be selected, as in the scene. */
+/** The list of all entities in the world, by name; several can be selected, as in the scene. */
 export class EntityList {
   readonly element: HTMLElement;
   private readonly rows: VirtualRows;
   private entities: readonly WorldEntity[] = [];
-  /** The row that keys continue from, and where a range begins. */
+  /** The row from which arrow keys continue, and the row where a range begins. */
   private current = 0;
   private anchor = 0;
 
@@ -30,8 +30,8 @@ export class EntityList {
     this.element.setAttribute("role", "listbox");
     this.element.setAttribute("aria-multiselectable", "true");
     this.element.setAttribute("aria-label", strings.modelling.entities);
-    this.element.addEventListener("keydown", (event) => this.keyed(event));
-    this.element.addEventListener("mousedown", (event) => this.pressed(event));
+    this.element.addEventListener("keydown", (event) => this.onKeyDown(event));
+    this.element.addEventListener("mousedown", (event) => this.onMouseDown(event));
     modelling.changed.on(() => this.show());
     modelling.selectionChanged.on(() => this.reveal());
     this.show();
@@ -65,18 +65,18 @@ export class EntityList {
       h("span", {}, name),
     );
     row.id = `entity-${index}`;
-    row.addEventListener("click", (event) => this.take(index, event.shiftKey, event.ctrlKey || event.metaKey));
+    row.addEventListener("click", (event) => this.selectRow(index, event.shiftKey, event.ctrlKey || event.metaKey));
     return row;
   }
 
-  /** With Shift the browser would select text, from the field on that was edited last. */
-  private pressed(event: MouseEvent): void {
+  /** Stops the browser from selecting text on Shift, which would start at the field edited last. */
+  private onMouseDown(event: MouseEvent): void {
     if (!event.shiftKey) return;
     event.preventDefault();
     this.element.focus({ preventScroll: true });
   }
 
-  private take(index: number, range: boolean, toggle: boolean): void {
+  private selectRow(index: number, range: boolean, toggle: boolean): void {
     const entity = this.entities[index];
     if (!entity) return;
     this.current = index;
@@ -92,13 +92,13 @@ export class EntityList {
     else this.element.removeAttribute("aria-activedescendant");
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const last = this.entities.length - 1;
     const to = { ArrowDown: this.current + 1, ArrowUp: this.current - 1, Home: 0, End: last }[event.key];
     if (to === undefined || last < 0) return;
     event.preventDefault();
     const index = Math.max(0, Math.min(last, to));
-    this.take(index, event.shiftKey, false);
+    this.selectRow(index, event.shiftKey, false);
     this.rows.reveal(index);
   }
 }

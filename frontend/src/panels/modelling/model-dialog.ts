@@ -5,7 +5,7 @@ import type { Modelling } from "../../state/modelling/modelling";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
 
-/** Chooses among the models on the search path; the next click in the scene puts it there. */
+/** Lets the user choose among the models on the search path; the next click in the scene places the model. */
 export class ModelDialog {
   private readonly dialog: Dialog;
   private readonly search = h("input", { class: "field" });
@@ -20,14 +20,14 @@ export class ModelDialog {
     this.search.placeholder = words.search;
     this.search.setAttribute("aria-label", words.search);
     this.search.addEventListener("input", () => this.fill());
-    for (const each of [this.search, this.list]) each.addEventListener("keydown", (event) => this.keyed(event));
+    for (const each of [this.search, this.list]) each.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.dialog = new Dialog(
       words.models,
       [h("div", { class: "search-box" }, icon("search"), this.search), this.list],
       [{ label: strings.shell.cancel }, { label: words.choose, main: true, run: () => this.accept() }],
       "add-dialog",
     );
-    const forget = modelling.offered.on((models) => {
+    const forget = modelling.modelsArrived.on((models) => {
       this.models = models;
       this.fill();
     });
@@ -37,13 +37,13 @@ export class ModelDialog {
   open(): void {
     this.dialog.open(this.search);
     this.fill();
-    this.modelling.askModels();
+    this.modelling.requestModels();
   }
 
   private fill(): void {
     const words = strings.modelling;
-    const wanted = this.search.value.trim().toLowerCase();
-    this.shown = (this.models ?? []).filter(({ name, address }) => `${name} ${address}`.toLowerCase().includes(wanted));
+    const query = this.search.value.trim().toLowerCase();
+    this.shown = (this.models ?? []).filter(({ name, address }) => `${name} ${address}`.toLowerCase().includes(query));
     this.list.replaceChildren(...this.shown.map((model) => this.row(model)));
     if (this.models && this.shown.length === 0) {
       this.list.append(h("p", { class: "empty" }, this.models.length === 0 ? words.noModels : words.notFound));
@@ -71,7 +71,7 @@ export class ModelDialog {
     });
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     if (event.key === "Enter" && event.target !== this.search && this.accept()) this.dialog.close();
     const step = event.key === "ArrowDown" ? 1 : event.key === "ArrowUp" ? -1 : 0;
     const at = this.shown.findIndex((model) => model === this.chosen) + step;

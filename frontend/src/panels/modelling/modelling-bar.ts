@@ -7,7 +7,7 @@ import { keyText, type Shortcut } from "../../widgets/shortcuts";
 import { ModelDialog } from "./model-dialog";
 import { WORLD_KEYS, type WorldCommands } from "./world-commands";
 
-/** The entities that can be put into the world, except models. */
+/** The entities that can be added to the world, except models. */
 const PALETTE: readonly (readonly [Exclude<NewKind, "model">, IconName])[] = [
   ["box", "shapeBox"],
   ["cylinder", "shapeCylinder"],
@@ -24,7 +24,7 @@ const MODES: readonly (readonly [GizmoMode, IconName])[] = [
   ["scale", "scale"],
 ];
 
-/** Over the scene while the world is modelled: what can be added, what the gizmo does, undo and save. */
+/** The toolbar over the scene while the world is modelled: entities to add, modes of the gizmo, undo and save. */
 export class ModellingBar {
   readonly element: HTMLElement;
   private readonly palette = new Map<NewKind, HTMLButtonElement>();
@@ -39,7 +39,7 @@ export class ModellingBar {
     commands: WorldCommands,
   ) {
     const words = strings.modelling;
-    for (const [kind, name] of PALETTE) this.palette.set(kind, this.adder(kind, name));
+    for (const [kind, name] of PALETTE) this.palette.set(kind, this.addButton(kind, name));
     this.palette.set("model", tool(words.addModel, "library", () => new ModelDialog(modelling).open()));
     for (const [mode, name] of MODES) {
       this.modes.set(mode, tool(withKeys(words.modes[mode], WORLD_KEYS[mode]), name, () => (modelling.gizmo = mode)));
@@ -60,38 +60,41 @@ export class ModellingBar {
   private show(): void {
     const { modelling } = this;
     this.element.hidden = !modelling.active;
-    for (const [kind, each] of this.palette) press(each, modelling.placing?.kind === kind);
-    for (const [mode, each] of this.modes) press(each, modelling.gizmo === mode);
+    for (const [kind, each] of this.palette) setPressed(each, modelling.placing?.kind === kind);
+    for (const [mode, each] of this.modes) setPressed(each, modelling.gizmo === mode);
     const scale = this.modes.get("scale");
     if (scale) scale.disabled = modelling.selected.length > 0 && !modelling.canScale;
-    press(this.snap, modelling.snapping.enabled);
+    setPressed(this.snap, modelling.snapping.enabled);
     this.undo.disabled = !modelling.canUndo;
     this.redo.disabled = !modelling.canRedo;
     this.save.classList.toggle("unsaved", modelling.unsaved);
   }
 
-  /** A click takes the entity in hand, dragging drops it onto the ground, and the keyboard puts it into the middle. */
-  private adder(kind: Exclude<NewKind, "model">, name: IconName): HTMLButtonElement {
+  /**
+   * Returns a button that adds an entity: a click selects it for placing, dragging drops it onto the ground, and the
+   * keyboard adds it at the centre of the scene.
+   */
+  private addButton(kind: Exclude<NewKind, "model">, name: IconName): HTMLButtonElement {
     const { modelling } = this;
     const words = strings.modelling;
     const placing: Placing = { kind, address: "" };
-    const made = tool(kind === "wall" ? words.addWall : words.add(words.kinds[kind]), name, () => undefined);
-    made.setAttribute("aria-label", words.kinds[kind]);
+    const toolButton = tool(kind === "wall" ? words.addWall : words.add(words.kinds[kind]), name, () => undefined);
+    toolButton.setAttribute("aria-label", words.kinds[kind]);
     let wasDropped = false;
-    made.addEventListener("click", (event) => {
+    toolButton.addEventListener("click", (event) => {
       if (wasDropped) return;
       if (event.detail === 0) modelling.drop({ placing, at: null });
       else modelling.place(modelling.placing?.kind === kind ? null : placing);
     });
-    made.addEventListener("pointerup", ({ clientX: x, clientY: y }) => {
+    toolButton.addEventListener("pointerup", ({ clientX: x, clientY: y }) => {
       if (!(document.elementFromPoint(x, y) instanceof HTMLCanvasElement)) return;
       wasDropped = true; // a click follows
       setTimeout(() => (wasDropped = false));
       modelling.drop({ placing, at: { x, y } });
     });
-    // Else a finger that drags would scroll, and the button would hear no more of it.
-    made.addEventListener("pointerdown", ({ pointerId }) => made.setPointerCapture(pointerId));
-    return made;
+    // Without the capture, dragging a finger would scroll the page, and the button would receive no further events.
+    toolButton.addEventListener("pointerdown", ({ pointerId }) => toolButton.setPointerCapture(pointerId));
+    return toolButton;
   }
 }
 
@@ -99,7 +102,7 @@ function tool(label: string, name: IconName, run: () => void): HTMLButtonElement
   return button(label, run, "scene-tool small", icon(name));
 }
 
-function press(element: HTMLButtonElement, on: boolean): void {
+function setPressed(element: HTMLButtonElement, on: boolean): void {
   element.setAttribute("aria-pressed", String(on));
   element.classList.toggle("active", on);
 }

@@ -3,7 +3,7 @@ import { strings } from "../../strings";
 import { askName } from "../../widgets/dialog";
 import { matches, type Shortcut } from "../../widgets/shortcuts";
 
-/** The keys of modelling, as Gazebo and Blender have them. */
+/** The keys of modelling, as in Gazebo and Blender. */
 export const WORLD_KEYS = {
   translate: { key: "t" },
   rotate: { key: "r" },
@@ -22,22 +22,22 @@ export const WORLD_KEYS = {
   escape: { key: "Escape" },
 } as const satisfies Readonly<Record<string, Shortcut>>;
 
-/** Where keys are text, or belong to what is open over the page. */
+/** Elements in which keys enter text. */
 const TEXT = "input:not([type=checkbox]):not([type=range]), textarea, select, [contenteditable]";
-const OTHERS = "dialog, [role=menu]";
-/** Panels have keys of their own; the world's hold in its own panel. */
-const ELSEWHERE = ".panel:not(.world-panel)";
+const OVERLAYS = "dialog, [role=menu]";
+/** Panels have keys of their own; the world's keys also work in the World panel. */
+const OTHER_PANELS = ".panel:not(.world-panel)";
 
-/** The commands of keys and buttons on the world. */
+/** The commands for modelling the world, as keys and buttons run them. */
 export class WorldCommands {
-  private readonly runs: Readonly<Record<keyof typeof WORLD_KEYS, () => void>>;
+  private readonly actions: Readonly<Record<keyof typeof WORLD_KEYS, () => void>>;
 
-  /** `escape` releases the entity that the mouse holds, or has in hand. */
+  /** `escape` cancels the drag or the placing in progress. */
   constructor(
     private readonly modelling: Modelling,
     escape: () => void,
   ) {
-    this.runs = {
+    this.actions = {
       translate: () => (modelling.gizmo = "translate"),
       rotate: () => (modelling.gizmo = "rotate"),
       scale: () => (modelling.gizmo = "scale"),
@@ -56,7 +56,7 @@ export class WorldCommands {
     };
   }
 
-  /** Into the world's file; where it has none yet, the user is asked for one. */
+  /** Saves the world to its file, or asks for a file if it has none yet. */
   save(): void {
     if (this.modelling.file === null) this.saveAs();
     else this.modelling.save(null);
@@ -67,12 +67,12 @@ export class WorldCommands {
     askName(words.saveAs, words.path, this.modelling.file ?? "", (path) => this.modelling.save(path));
   }
 
-  /** Takes the keys while the world is modelled: before those of tools, views and the File menu. */
-  takeKeys(): void {
+  /** Binds the keys, with precedence over those of tools, views and the File menu while the world is modelled. */
+  bindKeys(): void {
     document.addEventListener(
       "keydown",
       (event) => {
-        if (!this.modelling.active || !this.pressed(event)) return;
+        if (!this.modelling.active || !this.runKey(event)) return;
         event.preventDefault();
         event.stopImmediatePropagation();
       },
@@ -80,17 +80,17 @@ export class WorldCommands {
     );
   }
 
-  private pressed(event: KeyboardEvent): boolean {
+  private runKey(event: KeyboardEvent): boolean {
     const names = Object.keys(WORLD_KEYS) as (keyof typeof WORLD_KEYS)[];
     const name = names.find((each) => matches(event, WORLD_KEYS[each]));
     const target = event.target instanceof Element ? event.target : null;
-    if (name === undefined || target?.closest(OTHERS) || target?.closest(ELSEWHERE)) return false;
+    if (name === undefined || target?.closest(OVERLAYS) || target?.closest(OTHER_PANELS)) return false;
     if (target?.closest(TEXT)) {
       if (name !== "save" && name !== "saveAs") return false;
       if (target instanceof HTMLElement) target.blur(); // what is typed counts
     }
     if (name === "copy" && getSelection()?.isCollapsed === false) return false;
-    this.runs[name]();
+    this.actions[name]();
     return true;
   }
 }

@@ -14,13 +14,13 @@ import { entityItems } from "./entity-items";
 import { EntityList } from "./entity-list";
 import { WORLD_KEYS, type WorldCommands } from "./world-commands";
 
-/** The models and lights of the world that is edited, and the numbers of the selected ones. */
+/** The models and lights of the world being edited, and the properties of the selection. */
 export class WorldPanel implements Panel {
   readonly id = "world";
   readonly icon = "build";
   readonly element: HTMLElement;
-  private readonly off: HTMLElement;
-  private readonly work: HTMLElement;
+  private readonly inactiveView: HTMLElement;
+  private readonly activeView: HTMLElement;
   private readonly file = h("span", { class: "world-file" });
   private readonly mark = h("span", { class: "world-unsaved", title: strings.modelling.unsaved, role: "img", aria: { label: strings.modelling.unsaved } }, "●");
   private readonly empty = h("p", { class: "hint empty" }, strings.modelling.empty);
@@ -33,7 +33,7 @@ export class WorldPanel implements Panel {
   ) {
     const words = strings.modelling;
     const begin = button(words.begin, () => modelling.setActive(true), "tool framed", words.start);
-    this.off = h("div", { class: "world-off" }, h("p", { class: "hint" }, words.off), begin);
+    this.inactiveView = h("div", { class: "world-off" }, h("p", { class: "hint" }, words.off), begin);
     const any = (): boolean => modelling.selected.length > 0;
     this.actions = [
       [action(words.duplicate, WORLD_KEYS.duplicate, "duplicate", () => modelling.duplicate()), any],
@@ -45,8 +45,8 @@ export class WorldPanel implements Panel {
     const saveAs = action(words.saveAs, WORLD_KEYS.saveAs, "download", () => commands.saveAs());
     const head = h("div", { class: "world-head" }, icon("file"), this.file, this.mark, h("span", { class: "spacer" }), saveAs);
     const tree = new TreeView(words.properties, () => entityItems(modelling, angles), () => []);
-    this.work = h("div", { class: "world-work" }, head, toolbar, this.empty, new EntityList(modelling).element, tree.element, this.grid(angles));
-    this.element = h("div", { class: "panel world-panel" }, this.off, this.work);
+    this.activeView = h("div", { class: "world-work" }, head, toolbar, this.empty, new EntityList(modelling).element, tree.element, this.grid(angles));
+    this.element = h("div", { class: "panel world-panel" }, this.inactiveView, this.activeView);
     modelling.changed.on(() => this.show());
     modelling.selectionChanged.on(() => this.show());
     for (const signal of [modelling.changed, modelling.selectionChanged, angles.changed]) signal.on(tree.refresh);
@@ -55,8 +55,8 @@ export class WorldPanel implements Panel {
 
   private show(): void {
     const { active, file, unsaved, entities } = this.modelling;
-    this.off.hidden = active;
-    this.work.hidden = !active;
+    this.inactiveView.hidden = active;
+    this.activeView.hidden = !active;
     this.file.textContent = file === null ? strings.modelling.untitled : shortPath(file);
     this.file.title = file ?? "";
     this.mark.hidden = !unsaved;

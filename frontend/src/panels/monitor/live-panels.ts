@@ -8,7 +8,7 @@ import { PlotPanel } from "./plot-panel";
 import { TeleopPanel } from "./teleop-panel";
 import { TopicsPanel } from "./topics-panel";
 
-/** The panels that show what runs; `open` brings one to the front, `showTopic` adds the display of a topic. */
+/** Creates the panels for live data; `open` brings one to the front, `showTopic` adds the display of a topic. */
 export function livePanels(monitor: MonitorState, open: (id: PanelId) => void, showTopic: (topic: string) => void): Panel[] {
   const { plots, topics } = monitor;
   const plot = (topic: string, path: string): void => {

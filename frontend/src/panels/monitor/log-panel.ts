@@ -30,7 +30,7 @@ export class LogPanel implements Panel {
     this.list = new VirtualList<LogLine>(ROW_PX, (line) => this.row(line), () => this.showFollowing());
     this.list.element.setAttribute("role", "region");
     this.list.element.setAttribute("aria-label", words.list);
-    this.list.element.addEventListener("keydown", (event) => this.keyed(event));
+    this.list.element.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.pause = button(words.pauseHint, () => state.setPaused(!state.paused), "tool", strings.monitor.pause);
     this.newest = button(words.newestHint, () => this.list.follow(), "tool", icon("follow"), words.newest);
     const copy = button(words.copyHint, () => this.copy(copy), "tool", icon("copy"), words.copy);
@@ -111,8 +111,8 @@ export class LogPanel implements Panel {
   }
 
   private showFollowing(): void {
-    this.newest.classList.toggle("on", this.list.following);
-    this.newest.setAttribute("aria-pressed", String(this.list.following));
+    this.newest.classList.toggle("on", this.list.isFollowing);
+    this.newest.setAttribute("aria-pressed", String(this.list.isFollowing));
   }
 
   private row(line: LogLine): HTMLElement {
@@ -131,8 +131,8 @@ export class LogPanel implements Panel {
     return row;
   }
 
-  /** Up and down go from record to record. */
-  private keyed(event: KeyboardEvent): void {
+  /** Moves to the previous or next record with the arrow keys. */
+  private onKeyDown(event: KeyboardEvent): void {
     const { shown } = this.state;
     const at = this.chosen ? shown.indexOf(this.chosen) : shown.length;
     if (event.key === "ArrowUp") this.choose(shown[Math.max(0, at - 1)] ?? null);

@@ -8,23 +8,23 @@ interface Row {
   readonly value: HTMLElement;
   readonly children: HTMLElement;
   readonly toggle: HTMLButtonElement | null;
-  /** Tells how many elements are left out. */
+  /** Shows the number of elements that are omitted. */
   readonly omitted: HTMLElement;
 }
 
-/** A message as a tree that is opened row by row; new messages change the texts and leave it as open as it is. */
+/** A message as a tree that unfolds row by row; a new message changes the values and keeps the unfolded rows. */
 export class MessageTree {
   readonly element = h("div", { class: "message-tree" });
   private readonly rows = new Map<string, Row>();
-  private readonly opened = new Set<string>();
+  private readonly openPaths = new Set<string>();
   private fields: readonly MessageField[] = [];
 
-  /** `plot` is offered for numbers, with the path of the field. */
+  /** `plot` is called with the path of a numeric field whose plot button is clicked. */
   constructor(private readonly plot: (path: string) => void) {}
 
   show(fields: readonly MessageField[]): void {
-    // What is not much is open from the start.
-    if (this.fields.length === 0 && fields.length <= 3) for (const { name } of fields) this.opened.add(name);
+    // Short messages are unfolded from the start.
+    if (this.fields.length === 0 && fields.length <= 3) for (const { name } of fields) this.openPaths.add(name);
     this.fields = fields;
     this.fill(this.element, fields, "", null);
   }
@@ -34,7 +34,7 @@ export class MessageTree {
       const path = field.name.startsWith("[") ? `${prefix}${field.name}` : prefix === "" ? field.name : `${prefix}.${field.name}`;
       const row = this.row(path, field);
       if (row.value.textContent !== field.value) row.value.textContent = field.value;
-      const open = this.opened.has(path);
+      const open = this.openPaths.has(path);
       row.toggle?.setAttribute("aria-expanded", String(open));
       row.children.hidden = !open;
       if (open) {
@@ -67,13 +67,13 @@ export class MessageTree {
       numeric ? button(strings.monitor.topics.plot, () => this.plot(path), "tool bare", icon("plot")) : null,
     );
     const omitted = h("div", { class: "note" });
-    const made = { element: h("div", {}, head, children), value, children, toggle, omitted };
-    this.rows.set(path, made);
-    return made;
+    const node = { element: h("div", {}, head, children), value, children, toggle, omitted };
+    this.rows.set(path, node);
+    return node;
   }
 
   private toggle(path: string): void {
-    if (!this.opened.delete(path)) this.opened.add(path);
+    if (!this.openPaths.delete(path)) this.openPaths.add(path);
     this.fill(this.element, this.fields, "", null);
   }
 }

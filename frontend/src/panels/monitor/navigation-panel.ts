@@ -2,7 +2,7 @@ import { button, h } from "../../dom";
 import type { NavigationCommand } from "../../protocol";
 import type { NavigationState } from "../../state/monitor/navigation";
 import { strings } from "../../strings";
-import { whenSeen } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 
 type Row = "navigation" | "localization" | "goal" | "eta" | "distance" | "taken" | "recoveries";
@@ -51,36 +51,36 @@ export class NavigationPanel implements Panel {
       ),
     );
     state.changed.on(() => this.show());
-    whenSeen(this.element, (seen) => state.setOpen(seen));
+    onVisibilityChange(this.element, (seen) => state.setOpen(seen));
     this.show();
   }
 
   private show(): void {
     const words = strings.monitor.navigation;
-    const { told } = this.state;
+    const { lastState } = this.state;
     const put = (row: Row, text: string, kind = ""): void => {
       this.values[row].textContent = text;
       this.values[row].dataset["state"] = kind;
     };
     const seconds = (value: number | null | undefined): string => (value === null || value === undefined ? words.none : words.duration(value));
     for (const manager of ["navigation", "localization"] as const) {
-      const state = told?.[manager] ?? "unknown";
+      const state = lastState?.[manager] ?? "unknown";
       put(manager, words.states[state], state);
     }
-    const goal = told?.goal ?? "none";
+    const goal = lastState?.goal ?? "none";
     put("goal", words.goals[goal], goal);
-    put("eta", seconds(told?.eta));
-    put("taken", seconds(told?.taken));
-    put("distance", told?.distance === null || told?.distance === undefined ? words.none : `${told.distance.toFixed(2)} m`);
-    put("recoveries", told?.recoveries === null || told?.recoveries === undefined ? words.none : String(told.recoveries));
-    this.problem.textContent = told?.problem ?? "";
+    put("eta", seconds(lastState?.eta));
+    put("taken", seconds(lastState?.taken));
+    put("distance", lastState?.distance === null || lastState?.distance === undefined ? words.none : `${lastState.distance.toFixed(2)} m`);
+    put("recoveries", lastState?.recoveries === null || lastState?.recoveries === undefined ? words.none : String(lastState.recoveries));
+    this.problem.textContent = lastState?.problem ?? "";
     this.enable();
   }
 
-  /** A button can be pressed when what it does can be done now. */
+  /** Enables the buttons whose commands are possible now. */
   private enable(): void {
-    const { told } = this.state;
-    const managers = told ? [told.navigation, told.localization].filter((state) => state !== "unknown") : [];
+    const { lastState } = this.state;
+    const managers = lastState ? [lastState.navigation, lastState.localization].filter((state) => state !== "unknown") : [];
     const active = managers.includes("active");
     const idle = managers.includes("inactive");
     const can: Record<NavigationCommand, boolean> = {
@@ -88,10 +88,10 @@ export class NavigationPanel implements Panel {
       pause: active,
       resume: idle,
       reset: active || idle,
-      cancel: told?.goal === "active",
+      cancel: lastState?.goal === "active",
     };
     for (const [command, element] of Object.entries(this.buttons) as [NavigationCommand, HTMLButtonElement][]) {
-      element.disabled = !can[command] || told?.busy === true;
+      element.disabled = !can[command] || lastState?.busy === true;
     }
   }
 }

@@ -1,5 +1,5 @@
 import { h } from "../../dom";
-import { layered, type PlacedBox, type Route } from "../../state/monitor/graph-layout";
+import { layOutLayers, type PlacedBox, type Route } from "../../state/monitor/graph-layout";
 import type { DrawnGraph, GraphVertex } from "../../state/monitor/graph-model";
 import { PanZoom } from "../../widgets/pan-zoom";
 
@@ -8,7 +8,7 @@ const BOX_HEIGHT = 28;
 const PADDING = 24;
 const TEXT_PX = 12;
 
-/** The graph as SVG: dragged, zoomed with the wheel, with one vertex chosen by a click or by keyboard. */
+/** The graph as SVG; it can be dragged, zoomed with the wheel, and one vertex chosen by mouse or keyboard. */
 export class NodeGraphDrawing {
   readonly element = h("div", { class: "graph-drawing", tabIndex: 0, role: "group" });
   private readonly scene = make("g", {});
@@ -16,35 +16,38 @@ export class NodeGraphDrawing {
   private graph: DrawnGraph = { vertices: [], edges: [] };
   private size: readonly [number, number] = [1, 1];
   private readonly pan: PanZoom;
-  /** What is shown, also when the graph or the panel changes: what can be read, all of it, or what the user moved to. */
-  private shows: "legible" | "all" | "chosen" = "legible";
+  /**
+   * The part of the graph in view, which is restored when the graph or the panel changes: a legible part, the whole
+   * graph, or what the user moved to.
+   */
+  private viewMode: "legible" | "all" | "chosen" = "legible";
   private boxes: ReadonlyMap<string, PlacedBox> = new Map();
   private marked: string | null = null;
 
   constructor(
     label: string,
-    private readonly chosen: (vertex: GraphVertex | null) => void,
+    private readonly onChosen: (vertex: GraphVertex | null) => void,
   ) {
     this.element.setAttribute("aria-label", label);
     const svg = make("svg", {});
     svg.append(arrowHeads(), this.scene);
     this.element.append(svg);
-    this.pan = new PanZoom(this.element, (x, y, scale) => this.moved(x, y, scale), () => this.fit());
-    this.element.addEventListener("click", (event) => this.clicked(event.target as Element));
+    this.pan = new PanZoom(this.element, (x, y, scale) => this.onMoved(x, y, scale), () => this.fit());
+    this.element.addEventListener("click", (event) => this.onClick(event.target as Element));
     this.element.addEventListener("keydown", (event) => {
-      if (event.key === "Escape") chosen(null);
+      if (event.key === "Escape") onChosen(null);
     });
     new ResizeObserver(() => {
       this.place();
     }).observe(this.element);
   }
 
-  /** Draws a graph; the view stays where the user moved it. */
+  /** Draws a graph; a view that the user moved stays. */
   show(graph: DrawnGraph): void {
     this.graph = graph;
     if (this.measure) this.measure.font = `12px ${getComputedStyle(document.body).fontFamily}`;
     const boxes = graph.vertices.map((vertex) => ({ id: vertex.id, width: this.widthOf(vertex), height: BOX_HEIGHT }));
-    const layout = layered(boxes, graph.edges);
+    const layout = layOutLayers(boxes, graph.edges);
     this.size = [layout.width, layout.height];
     this.boxes = layout.boxes;
     const vertices = new Map(graph.vertices.map((vertex) => [vertex.id, vertex]));
@@ -54,7 +57,7 @@ export class NodeGraphDrawing {
     this.place();
   }
 
-  /** Marks a vertex, what it is connected with, and the edges between; null marks nothing. */
+  /** Marks a vertex, its neighbours and the edges between them; null marks nothing. */
   mark(id: string | null): void {
     this.marked = id;
     const { edges } = this.graph;
@@ -71,22 +74,22 @@ export class NodeGraphDrawing {
     }
   }
 
-  /** Shows all of it. */
+  /** Fits the whole graph into the panel. */
   fit(): void {
     if (this.element.clientWidth === 0) return;
-    this.pan.show(...this.size);
-    this.shows = "all";
+    this.pan.fitImage(...this.size);
+    this.viewMode = "all";
   }
 
   private place(): void {
-    if (this.shows === "all") this.fit();
-    if (this.shows !== "legible" || this.element.clientWidth === 0) return;
+    if (this.viewMode === "all") this.fit();
+    if (this.viewMode !== "legible" || this.element.clientWidth === 0) return;
     const box = this.boxes.get(this.marked ?? "") ?? this.busiest();
-    this.pan.open(...this.size, TEXT_PX, [box?.x ?? 0, box?.y ?? 0]);
-    this.shows = "legible";
+    this.pan.showLegibly(...this.size, TEXT_PX, [box?.x ?? 0, box?.y ?? 0]);
+    this.viewMode = "legible";
   }
 
-  /** The vertex with the most edges. */
+  /** Returns the box of the vertex with the most edges. */
   private busiest(): PlacedBox | undefined {
     const degrees = new Map<string, number>();
     for (const id of this.graph.edges.flatMap(({ from, to }) => [from, to])) degrees.set(id, (degrees.get(id) ?? 0) + 1);
@@ -111,7 +114,7 @@ export class NodeGraphDrawing {
       if (event.key !== "Enter" && event.key !== " ") return;
       event.preventDefault();
       event.stopPropagation();
-      this.chosen(vertex ?? null);
+      this.onChosen(vertex ?? null);
     });
     return shape;
   }
@@ -126,14 +129,14 @@ export class NodeGraphDrawing {
     return Math.ceil(this.measure?.measureText(text).width ?? text.length * 7) + PADDING;
   }
 
-  private clicked(target: Element): void {
-    if (this.pan.dragged) return;
+  private onClick(target: Element): void {
+    if (this.pan.wasDragged) return;
     const id = target.closest<SVGElement>("[data-id]")?.dataset["id"];
-    this.chosen(this.graph.vertices.find((vertex) => vertex.id === id) ?? null);
+    this.onChosen(this.graph.vertices.find((vertex) => vertex.id === id) ?? null);
   }
 
-  private moved(x: number, y: number, scale: number): void {
-    this.shows = "chosen";
+  private onMoved(x: number, y: number, scale: number): void {
+    this.viewMode = "chosen";
     this.scene.setAttribute("transform", `translate(${x} ${y}) scale(${scale})`);
   }
 }

@@ -4,11 +4,11 @@ import { drawnGraph, type GraphMode, type GraphOptions, type GraphVertex } from 
 import type { NodeGraphState } from "../../state/monitor/node-graph";
 import { strings } from "../../strings";
 import { choice, tickBox } from "../../widgets/controls";
-import { whenSeen } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { NodeGraphDrawing } from "./node-graph-drawing";
 
-/** The node graph, as rqt_graph shows it: publishers, topics and subscribers. */
+/** The node graph as rqt_graph shows it: publishers, topics and subscribers. */
 export class NodeGraphPanel implements Panel {
   readonly id = "graph";
   readonly icon = "graph";
@@ -61,7 +61,7 @@ export class NodeGraphPanel implements Panel {
     stage.append(this.drawing.element);
     this.element = h("div", { class: "panel monitor" }, bar, stage, this.details);
     state.changed.on(() => this.show());
-    whenSeen(this.element, (seen) => state.watch(seen));
+    onVisibilityChange(this.element, (seen) => state.watch(seen));
     this.show();
   }
 

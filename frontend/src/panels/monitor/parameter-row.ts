@@ -3,7 +3,10 @@ import type { ParameterKind, ParameterRow } from "../../protocol";
 import { parameterText, parameterValues } from "../../state/monitor/parameter-text";
 import { strings } from "../../strings";
 
-/** A parameter with the editor that suits its type. A value is sent when it is done, and is valid when the node confirms it. */
+/**
+ * A parameter with an editor for its type. A value is sent when its input is complete, and applies once the node
+ * confirms it.
+ */
 export class ParameterLine {
   readonly element: HTMLElement;
   private readonly editor: HTMLInputElement;
@@ -27,7 +30,7 @@ export class ParameterLine {
       this.editor.classList.add("numeric");
     }
     this.slider = this.makeSlider();
-    this.listen();
+    this.bindInputs();
     const range = row.minimum === "" ? "" : words.range(row.minimum, row.maximum, row.step);
     const hint = [row.description, row.constraints].filter((text) => text !== "").join(" ");
     const notes = [words.kinds[row.kind], row.read_only ? words.readOnly : "", range].filter((text) => text !== "");
@@ -43,23 +46,23 @@ export class ParameterLine {
     this.show(row);
   }
 
-  /** Whether this line can show a row: an editor is made for one type. */
+  /** Whether this line can show a row: its editor suits one type and range only. */
   suits(row: ParameterRow): boolean {
     const facts = ({ kind, read_only, minimum, maximum, description }: ParameterRow): string =>
       JSON.stringify([kind, read_only, minimum, maximum, description]);
     return facts(row) === facts(this.row);
   }
 
-  /** The value that the node has; text that the user is just writing stays. */
+  /** Shows the value that the node has, except over text that the user is editing. */
   show(row: ParameterRow): void {
     this.row = row;
     if (row.kind === "bool") this.editor.checked = row.values[0] === "true";
-    else if (document.activeElement !== this.editor) this.editor.value = this.text();
+    else if (document.activeElement !== this.editor) this.editor.value = this.editorText();
     if (this.slider && document.activeElement !== this.slider) this.slider.value = row.values[0] ?? "0";
   }
 
-  /** Shows the outcome of setting the parameter: its present value, and the reason of a refusal. */
-  settled(successful: boolean, reason: string): void {
+  /** Shows the result of setting the parameter: its current value, and the reason for a refusal. */
+  showResult(successful: boolean, reason: string): void {
     this.problem.hidden = successful;
     this.problem.textContent = successful ? "" : reason || strings.monitor.parameters.refused;
     this.element.classList.toggle("wrong", !successful);
@@ -68,7 +71,7 @@ export class ParameterLine {
     if (this.slider) this.slider.value = this.row.values[0] ?? "0";
   }
 
-  private text(): string {
+  private editorText(): string {
     return this.row.kind === "not_set" ? strings.monitor.parameters.notSet : parameterText(this.row.kind, this.row.values);
   }
 
@@ -86,25 +89,25 @@ export class ParameterLine {
     return slider;
   }
 
-  private listen(): void {
+  private bindInputs(): void {
     if (this.row.kind === "bool") {
       this.editor.addEventListener("change", () => this.send([String(this.editor.checked)]));
       return;
     }
-    this.editor.addEventListener("change", () => this.take());
+    this.editor.addEventListener("change", () => this.sendText());
     this.editor.addEventListener("keydown", (event) => {
       if (event.key === "Escape") {
-        this.editor.value = this.text();
-        this.settled(true, "");
+        this.editor.value = this.editorText();
+        this.showResult(true, "");
         this.editor.blur();
-      } else if (event.key === "Enter") this.take();
+      } else if (event.key === "Enter") this.sendText();
     });
   }
 
-  private take(): void {
-    if (this.editor.value === this.text()) return;
+  private sendText(): void {
+    if (this.editor.value === this.editorText()) return;
     const values = parameterValues(this.row.kind, this.editor.value);
-    if (values === null) this.settled(false, strings.monitor.parameters.unreadable);
+    if (values === null) this.showResult(false, strings.monitor.parameters.unreadable);
     else this.send(values);
   }
 

@@ -4,11 +4,11 @@ import type { ParametersState } from "../../state/monitor/parameters";
 import { strings } from "../../strings";
 import { textField } from "../../widgets/controls";
 import { saveText } from "../../widgets/save-file";
-import { whenSeen } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { ParameterLine } from "./parameter-row";
 
-/** The parameters of a node, to be edited, as rqt_reconfigure shows them. */
+/** The parameters of a node for editing, as in rqt_reconfigure. */
 export class ParametersPanel implements Panel {
   readonly id = "parameters";
   readonly icon = "parameters";
@@ -31,15 +31,15 @@ export class ParametersPanel implements Panel {
     const bar = h("div", { class: "toolbar" }, filter, h("span", { class: "spacer" }), this.dump);
     const right = h("div", { class: "scroll" }, this.note, this.rows);
     this.element = h("div", { class: "panel monitor" }, bar, h("div", { class: "parameters" }, this.nodes, right));
-    this.nodes.addEventListener("keydown", (event) => this.keyed(event));
+    this.nodes.addEventListener("keydown", (event) => this.onKeyDown(event));
     state.nodesChanged.on(() => this.showNodes());
     state.changed.on(() => this.show());
-    state.resultCame.on(({ name, successful, reason }) => this.lines.get(name)?.settled(successful, reason));
-    state.dumpCame.on(({ file, text, error }) => {
+    state.resultArrived.on(({ name, successful, reason }) => this.lines.get(name)?.showResult(successful, reason));
+    state.dumpArrived.on(({ file, text, error }) => {
       if (error === null) saveText(file, text, "application/yaml");
-      else this.say(error);
+      else this.showNote(error);
     });
-    whenSeen(this.element, (seen) => state.watch(seen));
+    onVisibilityChange(this.element, (seen) => state.watch(seen));
     this.showNodes();
     this.show();
   }
@@ -63,7 +63,7 @@ export class ParametersPanel implements Panel {
     this.showNodes();
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const { nodes } = this.state;
     const items = [...this.nodes.children] as HTMLElement[];
     const at = items.indexOf(document.activeElement as HTMLElement);
@@ -95,14 +95,14 @@ export class ParametersPanel implements Panel {
       } else line.show(row);
       return line.element;
     });
-    const same = elements.length === this.rows.childElementCount && elements.every((each, at) => each === this.rows.children[at]);
+    const same = elements.length === this.rows.childElementCount && elements.every((element, at) => element === this.rows.children[at]);
     if (!same) this.rows.replaceChildren(...elements);
-    if (node === null) this.say(words.choose);
-    else if (parameters === null) this.say(words.asking);
-    else this.say(parameters.error ?? (shown.length === 0 ? words.none : ""));
+    if (node === null) this.showNote(words.choose);
+    else if (parameters === null) this.showNote(words.asking);
+    else this.showNote(parameters.error ?? (shown.length === 0 ? words.none : ""));
   }
 
-  private say(text: string): void {
+  private showNote(text: string): void {
     this.note.textContent = text;
     this.note.hidden = text === "";
   }

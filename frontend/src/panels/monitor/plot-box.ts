@@ -10,7 +10,7 @@ import { saveText } from "../../widgets/save-file";
 import { PlotChart, seriesColor } from "./plot-chart";
 import { PlotPicker } from "./plot-picker";
 
-/** One diagram with its series and their values. */
+/** One plot with its series and their values. */
 export class PlotBox {
   readonly element: HTMLElement;
   private readonly legend = h("div", { class: "plot-legend" });
@@ -33,8 +33,8 @@ export class PlotBox {
       this.legend,
       h("span", { class: "spacer" }),
       this.range,
-      button(words.addSeries, () => this.pick(), "tool bare", icon("plus")),
-      button(words.csvHintOf, () => this.save(), "tool bare", icon("download")),
+      button(words.addSeries, () => this.openPicker(), "tool bare", icon("plus")),
+      button(words.csvHintOf, () => this.saveCsv(), "tool bare", icon("download")),
       button(words.removePlot, () => state.removePlot(plot), "tool bare", icon("close")),
     );
     const label = { label: words.diagram };
@@ -45,7 +45,7 @@ export class PlotBox {
     this.show();
   }
 
-  /** Series, errors or settings changed. */
+  /** Updates after series, errors or settings have changed. */
   show(): void {
     const words = strings.monitor.plot;
     this.values.clear();
@@ -70,8 +70,8 @@ export class PlotBox {
     this.showValues();
   }
 
-  /** Opens the line to write a series into. */
-  pick(): void {
+  /** Opens the input for adding a series. */
+  openPicker(): void {
     if (!this.picker) {
       this.picker = new PlotPicker(
         this.state,
@@ -122,7 +122,7 @@ export class PlotBox {
     );
   }
 
-  /** The values shown, rounded outwards, to begin a fixed range with. */
+  /** Returns the range of the visible values, rounded, as the initial fixed range. */
   private shownRange(): [number, number] {
     const [from, to] = this.state.window ?? [0, 0];
     const shown = this.plot.series.flatMap(({ buffer }) => {
@@ -135,7 +135,7 @@ export class PlotBox {
     return high > low ? [Number(low.toPrecision(3)), Number(high.toPrecision(3))] : [low - 1, high + 1];
   }
 
-  private save(): void {
+  private saveCsv(): void {
     const { window: shown, source } = this.state;
     const { series } = this.plot;
     if (!shown) return;

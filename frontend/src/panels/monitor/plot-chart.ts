@@ -7,18 +7,18 @@ import type { Plot, PlotsState } from "../../state/monitor/plots";
 const COLORS = 8;
 const AXIS_FONT = "10.5px system-ui, sans-serif";
 const Y_AXIS_PX = 58;
-/** From here on times are points in time, not seconds since a simulation began. */
-const CALENDAR_FROM = 1e8;
+/** Seconds; greater times are calendar times, smaller ones seconds since the start of a simulation. */
+const MIN_CALENDAR_TIME = 1e8;
 
-/** The colour of the series at a place of a plot, as a CSS variable. */
+/** Returns the colour of a plot's series, as a CSS variable. */
 export function seriesColor(index: number): string {
   return `var(--plot-${(index % COLORS) + 1})`;
 }
 
-/** One diagram, drawn by uPlot, which is fetched when the first one is to be seen. */
+/** One plot, drawn by uPlot, which is fetched when the first plot becomes visible. */
 export class PlotChart {
   readonly element = h("div", { class: "plot-canvas" });
-  /** Values under the pointer, by series; null where the pointer is elsewhere. */
+  /** The values at the pointer, by series; null while the pointer is elsewhere. */
   atCursor: readonly (number | null)[] | null = null;
   private library: typeof uPlot | null = null;
   private fetching = false;
@@ -33,13 +33,13 @@ export class PlotChart {
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
 
-  /** Draws what is in the window now. */
+  /** Draws the data in the current time window. */
   draw(): void {
     const { plot, state } = this;
     const [width, height] = [this.element.clientWidth, this.element.clientHeight];
     if (width === 0 || height === 0) return;
     if (!this.library) {
-      this.fetch();
+      this.fetchLibrary();
       return;
     }
     if (this.count !== plot.series.length) this.rebuild(this.library, width, height);
@@ -69,7 +69,7 @@ export class PlotChart {
     this.draw();
   }
 
-  private fetch(): void {
+  private fetchLibrary(): void {
     if (this.fetching) return;
     this.fetching = true;
     import("./plot-library").then(
@@ -77,7 +77,7 @@ export class PlotChart {
         this.library = UPlot;
         this.draw();
       },
-      // The program has ended: when it is there again, the next values ask once more.
+      // The server is gone. Once it is back, the next values trigger another attempt.
       () => (this.fetching = false),
     );
   }
@@ -106,7 +106,7 @@ export class PlotChart {
             stroke: color(`--plot-${(index % COLORS) + 1}`),
             width: 1.4,
             points: { show: false },
-            // A value for each column is not missing because another series has times in between.
+            // A gap is an absent value of this series, not a column that only another series has.
             spanGaps: false,
           })),
         ],
@@ -115,8 +115,8 @@ export class PlotChart {
           { ...axis, size: Y_AXIS_PX, values: (_, values) => values.map((value) => valueText(value)) },
         ],
         hooks: {
-          setCursor: [(chart) => this.read(chart)],
-          setSelect: [(chart) => this.select(chart)],
+          setCursor: [(chart) => this.readCursor(chart)],
+          setSelect: [(chart) => this.zoomToSelection(chart)],
         },
       },
       undefined,
@@ -124,7 +124,7 @@ export class PlotChart {
     );
   }
 
-  private read(chart: uPlot): void {
+  private readCursor(chart: uPlot): void {
     const { left } = chart.cursor;
     if (left === undefined || left < 0) {
       this.atCursor = null;
@@ -138,15 +138,15 @@ export class PlotChart {
     this.cursorMoved();
   }
 
-  private select(chart: uPlot): void {
+  private zoomToSelection(chart: uPlot): void {
     const { left, width } = chart.select;
     if (width < 4) return;
-    this.state.hold(chart.posToVal(left, "x"), chart.posToVal(left + width, "x"));
+    this.state.freezeAt(chart.posToVal(left, "x"), chart.posToVal(left + width, "x"));
     chart.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
   }
 }
 
-/** Least and greatest value of a table, with some room; values that are all equal are in the middle. */
+/** Returns the minimum and maximum of a table, with a margin; equal values are centred. */
 function rangeOf([, ...columns]: ReturnType<typeof plotTable>): [number, number] {
   let [low, high] = [Infinity, -Infinity];
   for (const column of columns) {
@@ -161,9 +161,9 @@ function rangeOf([, ...columns]: ReturnType<typeof plotTable>): [number, number]
   return [low - room, high + room];
 }
 
-/** A time on the axis: the time of day, or seconds where it is not a date. */
+/** Returns the label of a time on the axis: the time of day, or seconds if it is not a calendar time. */
 function timeText(time: number): string {
-  if (time < CALENDAR_FROM) return `${Number(time.toFixed(3))} s`;
+  if (time < MIN_CALENDAR_TIME) return `${Number(time.toFixed(3))} s`;
   const whole = new Date(time * 1000);
   const parts = [whole.getHours(), whole.getMinutes(), whole.getSeconds()].map((each) => String(each).padStart(2, "0"));
   const rest = Math.round((time % 1) * 1000) / 1000;

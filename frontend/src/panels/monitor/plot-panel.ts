@@ -10,7 +10,7 @@ import { PlotBox } from "./plot-box";
 
 const WINDOWS = [5, 10, 30, 60, 120, 300, 600];
 
-/** Diagrams of numbers of any topic. */
+/** Plots of numeric fields of any topic. */
 export class PlotPanel implements Panel {
   readonly id = "plot";
   readonly icon = "plot";
@@ -48,7 +48,7 @@ export class PlotPanel implements Panel {
     state.changed.on(() => this.show());
     const draw = coalesced(() => this.draw());
     state.moved.on(draw);
-    // The colours of a still image change with the theme too.
+    // The colours on the canvas must follow the theme even while no values arrive.
     new MutationObserver(draw).observe(document.documentElement, { attributeFilter: ["data-theme"] });
     this.show();
   }
@@ -64,7 +64,7 @@ export class PlotPanel implements Panel {
 
   private add(): void {
     const plot = this.state.addPlot();
-    this.boxes.get(plot)?.pick();
+    this.boxes.get(plot)?.openPicker();
   }
 
   private show(): void {

@@ -5,16 +5,16 @@ import type { PlotsState } from "../../state/monitor/plots";
 import type { TopicsState } from "../../state/monitor/topics";
 import { strings } from "../../strings";
 
-const MOST_OFFERED = 200;
+const MAX_OFFERS = 200;
 
 interface Offer {
   text: string;
   note: string;
-  /** Whether choosing it ends the choice: it is a field, not a topic. */
-  final: boolean;
+  /** Whether choosing it completes the choice: it is a field, not a topic. */
+  isField: boolean;
 }
 
-/** A line to write a topic and its field into, with all that fit offered below. */
+/** An input for a topic and its field, with a list of matching ones below. */
 export class PlotPicker {
   readonly element: HTMLElement;
   private readonly input = h("input", { class: "field", role: "combobox", aria: { autocomplete: "list" } });
@@ -23,7 +23,7 @@ export class PlotPicker {
   private active = 0;
   private fields: TopicFields | null = null;
   private asked: string | null = null;
-  private readonly forget: (() => void)[];
+  private readonly unsubscribe: (() => void)[];
 
   constructor(
     private readonly plots: PlotsState,
@@ -38,22 +38,22 @@ export class PlotPicker {
     this.input.setAttribute("aria-controls", this.list.id);
     this.input.setAttribute("aria-expanded", "true");
     this.input.spellcheck = false;
-    this.input.addEventListener("input", () => this.typed());
-    this.input.addEventListener("keydown", (event) => this.keyed(event));
+    this.input.addEventListener("input", () => this.onInput());
+    this.input.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.input.addEventListener("blur", () => this.close());
-    // The list must not take the focus from the line.
+    // The list must not take the focus from the input.
     this.list.addEventListener("pointerdown", (event) => event.preventDefault());
     this.element = h("div", { class: "picker" }, this.input, this.list);
-    topics.list(this, true);
-    this.forget = [
-      topics.listChanged.on(() => this.offer()),
-      plots.fieldsTold.on((fields) => {
+    topics.watchList(this, true);
+    this.unsubscribe = [
+      topics.listChanged.on(() => this.updateOffers()),
+      plots.fieldsArrived.on((fields) => {
         if (fields.topic !== this.asked) return;
         this.fields = fields;
-        this.offer();
+        this.updateOffers();
       }),
     ];
-    this.offer();
+    this.updateOffers();
   }
 
   focus(): void {
@@ -61,42 +61,42 @@ export class PlotPicker {
   }
 
   close(): void {
-    if (this.forget.length === 0) return;
-    for (const forget of this.forget.splice(0)) forget();
-    this.topics.list(this, false);
-    this.plots.askFields(null);
+    if (this.unsubscribe.length === 0) return;
+    for (const forget of this.unsubscribe.splice(0)) forget();
+    this.topics.watchList(this, false);
+    this.plots.requestFields(null);
     this.element.remove();
     this.closed();
   }
 
-  private typed(): void {
-    const topic = this.topicWritten();
+  private onInput(): void {
+    const topic = this.typedTopic();
     if (topic !== this.asked) {
       this.asked = topic;
       this.fields = null;
-      this.plots.askFields(topic);
+      this.plots.requestFields(topic);
     }
     this.active = 0;
-    this.offer();
+    this.updateOffers();
   }
 
-  /** The topic whose fields are to be offered: the one before the dot. */
-  private topicWritten(): string | null {
+  /** Returns the topic whose fields are to be offered: the text before the dot. */
+  private typedTopic(): string | null {
     const at = this.input.value.indexOf(".");
     return at > 0 ? this.input.value.slice(0, at).trim() : null;
   }
 
-  private offer(): void {
+  private updateOffers(): void {
     const written = this.input.value.trim().toLowerCase();
     this.offers =
       this.asked === null
-        ? this.topics.topics.map(({ name, types }) => ({ text: name, note: types.join(", "), final: false }))
+        ? this.topics.topics.map(({ name, types }) => ({ text: name, note: types.join(", "), isField: false }))
         : (this.fields?.fields ?? []).map(({ path, kind }) => ({
             text: fieldText({ topic: this.asked ?? "", path }),
             note: kind,
-            final: true,
+            isField: true,
           }));
-    this.offers = this.offers.filter(({ text }) => text.toLowerCase().includes(written)).slice(0, MOST_OFFERED);
+    this.offers = this.offers.filter(({ text }) => text.toLowerCase().includes(written)).slice(0, MAX_OFFERS);
     this.active = Math.min(this.active, Math.max(0, this.offers.length - 1));
     this.show();
   }
@@ -116,12 +116,12 @@ export class PlotPicker {
     rows[this.active]?.scrollIntoView({ block: "nearest" });
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const last = this.offers.length - 1;
     if (event.key === "ArrowDown") this.active = Math.min(last, this.active + 1);
     else if (event.key === "ArrowUp") this.active = Math.max(0, this.active - 1);
     else if (event.key === "Enter") this.enter();
-    else if (event.key === "Tab" && this.offers[this.active]?.final === false) this.choose(this.offers[this.active]);
+    else if (event.key === "Tab" && this.offers[this.active]?.isField === false) this.choose(this.offers[this.active]);
     else if (event.key === "Escape") this.close();
     else {
       event.stopPropagation();
@@ -129,31 +129,31 @@ export class PlotPicker {
     }
     event.preventDefault();
     event.stopPropagation();
-    if (this.forget.length > 0) this.show();
+    if (this.unsubscribe.length > 0) this.show();
   }
 
-  /** A field that is written out counts, offered or not: arrays have more elements than are offered. */
+  /** Accepts a field that is typed in full even if it is not offered: arrays have more elements than are listed. */
   private enter(): void {
     const field = parseField(this.input.value);
     const offer = this.offers[this.active];
     const written = this.offers.find(({ text }) => text === this.input.value.trim());
     if (offer && !written) this.choose(offer);
-    else if (field) this.take(field);
+    else if (field) this.accept(field);
     else if (offer) this.choose(offer);
   }
 
   private choose(offer: Offer | undefined): void {
     if (!offer) return;
-    const field = offer.final ? parseField(offer.text) : null;
+    const field = offer.isField ? parseField(offer.text) : null;
     if (field) {
-      this.take(field);
+      this.accept(field);
       return;
     }
     this.input.value = `${offer.text}.`;
-    this.typed();
+    this.onInput();
   }
 
-  private take(field: FieldName): void {
+  private accept(field: FieldName): void {
     this.chosen(field);
     this.close();
   }

@@ -1,18 +1,18 @@
 import { obviousDisplay } from "../../state/obvious-display";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import { tell } from "../../widgets/dialog";
+import { showNotice } from "../../widgets/dialog";
 
-/** Adds the obvious display of a topic, unless one shows it. */
+/** Adds the obvious display of a topic, unless an enabled display shows the topic already. */
 export function showTopic(session: Session, topic: string): void {
   const { configuration, displays } = session;
   if (displays.displays.some(({ enabled, rows }) => enabled && rows.text("", "Topic") === topic)) return;
-  const stop = configuration.offered.on(() => {
+  const stop = configuration.choicesArrived.on(() => {
     stop();
     const choice = configuration.choices?.topics.find((each) => each.topic === topic && each.classes.length > 0);
     const cls = choice ? obviousDisplay(choice) : null;
-    if (cls === null) tell(topic, strings.displays.topicNotShown);
+    if (cls === null) showNotice(topic, strings.displays.topicNotShown);
     else configuration.add(cls, cls.slice(cls.lastIndexOf("/") + 1), null, topic);
   });
-  configuration.askChoices();
+  configuration.requestChoices();
 }

@@ -1,21 +1,21 @@
 import type { TeleopState } from "../../state/monitor/teleop";
-import { STILL, stick } from "../../state/monitor/teleop-keys";
+import { STILL, stickDeflection } from "../../state/monitor/teleop-keys";
 
-/** Of the standard layout: LB and RB, one of which must be held to drive. */
-const DEAD_MAN = [4, 5];
+/** LB and RB in the standard layout; one of them must be held to drive. */
+const DEAD_MAN_BUTTONS = [4, 5];
 
-/** Reads the first gamepad while it is wanted: the left stick drives, the right one moves sideways. */
+/** Reads the first gamepad while it is enabled: the left stick drives, the right one moves sideways. */
 export class TeleopGamepad {
   private frame = 0;
-  private told: string | null = "";
+  private lastName: string | null = "";
 
-  /** `nameChanged` is called with the gamepad's name, null when there is none. */
+  /** `nameChanged` is called with the name of the gamepad, or null when there is none. */
   constructor(
     private readonly state: TeleopState,
     private readonly nameChanged: (name: string | null) => void,
   ) {}
 
-  /** Begins or ends to read it. */
+  /** Starts or stops reading the gamepad. */
   run(wanted: boolean): void {
     cancelAnimationFrame(this.frame);
     this.frame = 0;
@@ -25,14 +25,14 @@ export class TeleopGamepad {
 
   private read(): void {
     this.frame = requestAnimationFrame(() => this.read());
-    const pad = navigator.getGamepads().find((each) => each !== null && each.connected) ?? null;
+    const pad = navigator.getGamepads().find((gamepad) => gamepad !== null && gamepad.connected) ?? null;
     const name = pad?.id ?? null;
-    if (name !== this.told) {
-      this.told = name;
+    if (name !== this.lastName) {
+      this.lastName = name;
       this.nameChanged(name);
     }
-    const held = pad !== null && DEAD_MAN.some((button) => pad.buttons[button]?.pressed === true);
-    const axis = (index: number): number => stick(pad?.axes[index] ?? 0);
+    const held = pad !== null && DEAD_MAN_BUTTONS.some((button) => pad.buttons[button]?.pressed === true);
+    const axis = (index: number): number => stickDeflection(pad?.axes[index] ?? 0);
     const motion = held ? { x: -axis(1), y: -axis(2), z: 0, turn: -axis(0) } : STILL;
     this.state.move("gamepad", { ...motion, x: motion.x || 0, y: motion.y || 0, turn: motion.turn || 0 });
   }

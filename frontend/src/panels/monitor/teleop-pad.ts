@@ -1,15 +1,15 @@
 import { h } from "../../dom";
 import type { TeleopState } from "../../state/monitor/teleop";
-import { motionOfKey, STILL, together, type Motion } from "../../state/monitor/teleop-keys";
+import { motionOfKey, STILL, sumOf, type Motion } from "../../state/monitor/teleop-keys";
 import { strings } from "../../strings";
 
 const FASTER = 1.1;
 
-/** The square that drives: up is forward, left turns to the left. Keys drive while it has the focus. */
+/** The square for driving: up is forward, left turns to the left. Keys drive while it has the focus. */
 export class TeleopPad {
   readonly element: HTMLElement;
   private readonly knob = h("div", { class: "pad-knob" });
-  private readonly held = new Map<string, Motion>();
+  private readonly heldKeys = new Map<string, Motion>();
   private pointer: number | null = null;
 
   constructor(private readonly state: TeleopState) {
@@ -21,16 +21,16 @@ export class TeleopPad {
       this.knob,
     );
     const { element } = this;
-    element.addEventListener("pointerdown", (event) => this.grabbed(event));
-    element.addEventListener("pointermove", (event) => this.dragged(event));
+    element.addEventListener("pointerdown", (event) => this.onPointerDown(event));
+    element.addEventListener("pointermove", (event) => this.onPointerMove(event));
     for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
-      element.addEventListener(end, () => this.released());
+      element.addEventListener(end, () => this.onPointerUp());
     }
-    element.addEventListener("keydown", (event) => this.pressed(event));
+    element.addEventListener("keydown", (event) => this.onKeyDown(event));
     element.addEventListener("keyup", (event) => {
-      if (this.held.delete(event.code)) this.moveKeys();
+      if (this.heldKeys.delete(event.code)) this.moveKeys();
     });
-    // Whoever looks elsewhere lets go of everything.
+    // Losing the focus must stop the robot.
     element.addEventListener("blur", () => this.letGo());
     window.addEventListener("blur", () => this.letGo());
     window.addEventListener("pagehide", () => this.letGo());
@@ -42,7 +42,7 @@ export class TeleopPad {
   }
 
   letGo(): void {
-    this.held.clear();
+    this.heldKeys.clear();
     this.pointer = null;
     this.state.stop();
   }
@@ -55,39 +55,39 @@ export class TeleopPad {
     this.element.classList.toggle("driving", x !== 0 || side !== 0);
   }
 
-  private grabbed(event: PointerEvent): void {
+  private onPointerDown(event: PointerEvent): void {
     if (event.button !== 0 || this.pointer !== null) return;
     this.element.focus();
     this.element.setPointerCapture(event.pointerId);
     this.pointer = event.pointerId;
-    this.dragged(event);
+    this.onPointerMove(event);
     event.preventDefault();
   }
 
-  private dragged(event: PointerEvent): void {
+  private onPointerMove(event: PointerEvent): void {
     if (event.pointerId !== this.pointer) return;
     const box = this.element.getBoundingClientRect();
     const part = (value: number, start: number, length: number): number =>
       Math.min(1, Math.max(-1, (1 - (2 * (value - start)) / length) / 0.84));
     const forward = part(event.clientY, box.top, box.height);
     const left = part(event.clientX, box.left, box.width);
-    // Pressing the middle means nothing yet: a hand rests there.
-    const motion = { ...STILL, x: dead(forward), [event.shiftKey ? "y" : "turn"]: dead(left) };
+    // Leave a dead zone in the middle: pressing there must not move the robot yet.
+    const motion = { ...STILL, x: withDeadZone(forward), [event.shiftKey ? "y" : "turn"]: withDeadZone(left) };
     this.state.move("pad", motion);
   }
 
-  private released(): void {
+  private onPointerUp(): void {
     if (this.pointer === null) return;
     this.pointer = null;
     this.state.move("pad", STILL);
   }
 
-  private pressed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const motion = motionOfKey(event.key, event.shiftKey);
     if (motion) {
       if (!event.repeat) {
-        this.held.set(event.code, motion);
+        this.heldKeys.set(event.code, motion);
         this.moveKeys();
       }
     } else if (event.key === " " || event.key === "k" || event.key === "K") this.letGo();
@@ -99,7 +99,7 @@ export class TeleopPad {
   }
 
   private moveKeys(): void {
-    this.state.move("keys", together(this.held.values()));
+    this.state.move("keys", sumOf(this.heldKeys.values()));
   }
 
   private scale(factor: number): void {
@@ -109,6 +109,6 @@ export class TeleopPad {
   }
 }
 
-function dead(value: number): number {
+function withDeadZone(value: number): number {
   return Math.abs(value) < 0.06 ? 0 : value;
 }

@@ -5,7 +5,7 @@ import { valueText } from "../../state/monitor/field-text";
 import type { TeleopState } from "../../state/monitor/teleop";
 import { strings } from "../../strings";
 import { choice, numberField, tickBox } from "../../widgets/controls";
-import { whenSeen } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { TeleopGamepad } from "./teleop-gamepad";
 import { TeleopPad } from "./teleop-pad";
@@ -22,14 +22,14 @@ export class TeleopPanel implements Panel {
   private readonly gamepad: TeleopGamepad;
   private readonly aim = h("div", { class: "teleop-aim", aria: { live: "polite" } });
   private readonly velocity = h("output", { class: "teleop-velocity numeric" });
-  /** Both are laid out and one is seen: a click must not move what is clicked. */
+  /** Both texts are laid out and one is visible, so that a click on the pad does not move the pad. */
   private readonly focus = {
     active: h("span", {}, strings.monitor.teleop.active),
     inactive: h("span", {}, strings.monitor.teleop.inactive),
   };
   private readonly gamepadName = h("span", { class: "note" });
   private readonly limits: Record<"linear" | "angular", HTMLInputElement>;
-  private seen = false;
+  private isVisible = false;
 
   constructor(private readonly state: TeleopState) {
     const words = strings.monitor.teleop;
@@ -57,8 +57,8 @@ export class TeleopPanel implements Panel {
     );
     for (const event of ["focus", "blur"]) this.pad.element.addEventListener(event, () => this.showFocus());
     state.changed.on(() => this.show());
-    whenSeen(this.element, (seen) => {
-      this.seen = seen;
+    onVisibilityChange(this.element, (seen) => {
+      this.isVisible = seen;
       if (!seen) this.pad.letGo();
       state.setOpen(seen);
       this.gamepad.run(seen && state.settings.gamepad);
@@ -84,7 +84,7 @@ export class TeleopPanel implements Panel {
     rate.value = String(settings.rate);
     const gamepad = tickBox(words.gamepad, words.gamepadHint, (ticked) => {
       this.state.configure({ gamepad: ticked });
-      this.gamepad.run(ticked && this.seen);
+      this.gamepad.run(ticked && this.isVisible);
       if (!ticked) this.gamepadName.textContent = "";
     });
     gamepad.box.checked = settings.gamepad;

@@ -10,11 +10,11 @@ export interface TopicRowEvents {
   measured(topic: string, ticked: boolean): void;
   opened(topic: string, open: boolean): void;
   plotted(topic: string, path: string): void;
-  /** The topic is to be shown in the scene. */
+  /** Called when the topic is to be shown in the scene. */
   shown(topic: string): void;
 }
 
-/** A topic of the monitor, and below it its last message while it is opened. */
+/** A topic of the monitor, and while it is open, its last message below it. */
 export class TopicLine {
   readonly head: HTMLTableRowElement;
   readonly body: HTMLTableRowElement;
@@ -58,8 +58,8 @@ export class TopicLine {
     this.cells.subscribers.textContent = String(subscribers);
   }
 
-  /** The state of tick and arrow. */
-  set(measured: boolean, opened: boolean): void {
+  /** Sets the tick box and the expander. */
+  setState(measured: boolean, opened: boolean): void {
     this.box.checked = measured || opened;
     this.expander.setAttribute("aria-expanded", String(opened));
     this.body.hidden = !opened;

@@ -3,11 +3,11 @@ import type { TopicRow } from "../../protocol";
 import type { TopicsState } from "../../state/monitor/topics";
 import { strings } from "../../strings";
 import { textField, tickBox } from "../../widgets/controls";
-import { whenSeen } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { TopicLine } from "./topic-row";
 
-/** The topics, as rqt_topic shows them: figures of ticked ones, the last message of opened ones. */
+/** The topics as in rqt_topic: rates of ticked topics, and the last message of open ones. */
 export class TopicsPanel implements Panel {
   readonly id = "topics";
   readonly icon = "topics";
@@ -18,7 +18,7 @@ export class TopicsPanel implements Panel {
   private readonly measured = new Set<string>();
   private readonly unfolded = new Set<string>();
   private filter = "";
-  private hidden = false;
+  private showsHidden = false;
 
   constructor(
     private readonly state: TopicsState,
@@ -31,7 +31,7 @@ export class TopicsPanel implements Panel {
       this.show();
     });
     const hidden = tickBox(words.hidden, words.hiddenHint, (ticked) => {
-      this.hidden = ticked;
+      this.showsHidden = ticked;
       this.show();
     });
     const bar = h("div", { class: "toolbar" }, filter, h("span", { class: "spacer" }), hidden);
@@ -57,12 +57,12 @@ export class TopicsPanel implements Panel {
       this.body,
     );
     this.element = h("div", { class: "panel monitor" }, bar, h("div", { class: "scroll" }, table, this.empty));
-    this.element.addEventListener("keydown", (event) => this.keyed(event));
+    this.element.addEventListener("keydown", (event) => this.onKeyDown(event));
     state.listChanged.on(() => this.show());
     state.figuresChanged.on(() => this.showFigures());
-    state.messageCame.on((message) => this.lines.get(message.topic)?.showMessage(message));
-    whenSeen(this.element, (seen) => {
-      state.list(this, seen);
+    state.messageArrived.on((message) => this.lines.get(message.topic)?.showMessage(message));
+    onVisibilityChange(this.element, (seen) => {
+      state.watchList(this, seen);
       state.watch(seen ? this.measured : [], seen ? this.unfolded : []);
     });
   }
@@ -72,7 +72,7 @@ export class TopicsPanel implements Panel {
     const rows = shown.flatMap((topic) => {
       const line = this.line(topic.name);
       line.show(topic);
-      line.set(this.measured.has(topic.name), this.unfolded.has(topic.name));
+      line.setState(this.measured.has(topic.name), this.unfolded.has(topic.name));
       return [line.head, line.body];
     });
     const same = rows.length === this.body.childElementCount && rows.every((row, at) => row === this.body.children[at]);
@@ -82,27 +82,27 @@ export class TopicsPanel implements Panel {
 
   private isShown({ name }: TopicRow): boolean {
     if (!name.toLowerCase().includes(this.filter)) return false;
-    return this.hidden || !name.split("/").some((part) => part.startsWith("_"));
+    return this.showsHidden || !name.split("/").some((part) => part.startsWith("_"));
   }
 
   private line(name: string): TopicLine {
     const known = this.lines.get(name);
     if (known) return known;
-    const made = new TopicLine(name, {
+    const line = new TopicLine(name, {
       measured: (topic, ticked) => {
-        flip(this.measured, topic, ticked);
+        setMember(this.measured, topic, ticked);
         if (!ticked) this.unfolded.delete(topic);
         this.watch();
       },
       opened: (topic, open) => {
-        flip(this.unfolded, topic, open);
+        setMember(this.unfolded, topic, open);
         this.watch();
       },
       plotted: (topic, path) => this.plot(topic, path),
       shown: (topic) => this.showInScene(topic),
     });
-    this.lines.set(name, made);
-    return made;
+    this.lines.set(name, line);
+    return line;
   }
 
   private watch(): void {
@@ -114,8 +114,8 @@ export class TopicsPanel implements Panel {
     for (const [name, line] of this.lines) line.showTraffic(this.state.traffic.get(name));
   }
 
-  /** Up and down go from topic to topic. */
-  private keyed(event: KeyboardEvent): void {
+  /** Moves to the previous or next topic with the arrow keys. */
+  private onKeyDown(event: KeyboardEvent): void {
     if (event.key !== "ArrowDown" && event.key !== "ArrowUp") return;
     const stops = [...this.body.querySelectorAll<HTMLElement>(":scope > tr[data-topic] .expander")];
     const at = stops.indexOf(document.activeElement as HTMLElement);
@@ -125,7 +125,7 @@ export class TopicsPanel implements Panel {
   }
 }
 
-function flip(set: Set<string>, member: string, wanted: boolean): void {
+function setMember(set: Set<string>, member: string, wanted: boolean): void {
   if (wanted) set.add(member);
   else set.delete(member);
 }

@@ -3,7 +3,10 @@ import type { Connection } from "../../connection/connection";
 import type { ArgumentForm } from "../../protocol";
 import { strings } from "../../strings";
 
-/** Over the scene while the description lacks arguments: a field for each, and the values that launch files give. */
+/**
+ * The form over the scene while the description lacks arguments: a field for each, and the values that launch files
+ * pass.
+ */
 export class ArgumentFormCard {
   readonly element = h("form", { class: "argument-form", aria: { label: strings.scene.arguments.label } });
   private fields = new Map<string, HTMLInputElement>();
@@ -12,9 +15,9 @@ export class ArgumentFormCard {
     this.element.hidden = true;
     this.element.addEventListener("submit", (event) => {
       event.preventDefault();
-      this.give();
+      this.submit();
     });
-    // The keys of the scene do not apply where values are typed.
+    // Keys of the scene must not act while values are typed.
     this.element.addEventListener("keydown", (event) => event.stopPropagation());
     connection.on("argument_form", (form) => this.show(form));
   }
@@ -38,7 +41,7 @@ export class ArgumentFormCard {
     if (document.activeElement === document.body) this.element.querySelector<HTMLElement>("select, input")?.focus();
   }
 
-  /** The sets of values that occur; choosing one fills the fields. */
+  /** Returns a choice of the argument sets found in launch files; choosing one fills the fields. */
   private choice({ choices, names }: ArgumentForm): HTMLElement {
     const words = strings.scene.arguments;
     const select = h("select", { class: "choice", aria: { label: words.choose } });
@@ -53,8 +56,8 @@ export class ArgumentFormCard {
     return h("label", { class: "argument-row" }, h("span", {}, words.choose), select);
   }
 
-  /** An argument left empty is not given: the file has a value of its own, or reports the missing argument. */
-  private give(): void {
+  /** Sends the values. Empty fields are omitted: the file then uses its default, or reports the missing argument. */
+  private submit(): void {
     const given = [...this.fields].map(([name, { value }]) => [name, value.trim()] as const).filter(([, value]) => value !== "");
     this.connection.send({ type: "give_arguments", values: Object.fromEntries(given) });
   }

@@ -1,23 +1,23 @@
 import { h } from "../../dom";
 
-/** The scene, as the cards over it see it. */
-export interface Below {
-  /** The width in pixels that is covered at the right. */
+/** The scene below the cards. */
+export interface SceneBelow {
+  /** Returns the width covered at the right, pixels. */
   covered: () => number;
-  /** The distance from the left edge that robots reach, pixels. */
+  /** The rightmost pixel column that robots cover, from the left edge. */
   readonly robotsReach: number;
-  /** Moves the focal point to the middle of the uncovered part. */
+  /** Moves the focal point to the centre of the uncovered part. */
   makeRoom(): void;
-  /** Moves the visible content below an element of this height, pixels, that covers the upper edge. */
+  /** Moves the visible content below an element of this height (pixels) that covers the upper edge. */
   makeRoomAbove(height: number): void;
 }
 
-/** The cards over the scene at its right, one below the other: they share the height that there is. */
+/** The cards over the right side of the scene, one below the other, which share its height. */
 export class CardColumn {
   readonly element = h("div", { class: "stack" });
-  private below: Below | null = null;
+  private below: SceneBelow | null = null;
 
-  lieOver(below: Below): void {
+  connectScene(below: SceneBelow): void {
     this.below = below;
     below.covered = () => this.covered;
   }
@@ -27,12 +27,12 @@ export class CardColumn {
     return this.below !== null && this.below.robotsReach > this.left;
   }
 
-  /** A card was opened or closed by the user. */
+  /** Updates the scene after the user opened or closed a card. */
   readonly changed = (): void => this.below?.makeRoom();
 
   private get covered(): number {
     const cards = [...this.element.querySelectorAll<HTMLElement>(".inspect-card, .selection-card:not(.folded)")];
-    const isOpen = cards.some((each) => each.offsetHeight > 0);
+    const isOpen = cards.some((card) => card.offsetHeight > 0);
     return isOpen ? (this.element.parentElement?.clientWidth ?? 0) - this.left : 0;
   }
 

@@ -2,7 +2,7 @@ import type { Connection } from "../../connection/connection";
 import { h } from "../../dom";
 import { strings } from "../../strings";
 
-/** Over the scene while there is no server: what is seen is no longer true. */
+/** The notice over the scene while there is no connection, so that the scene is out of date. */
 export class ConnectionNotice {
   readonly element = h("div", { class: "notice", role: "alert" });
 

@@ -5,14 +5,17 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { placeText, shortPath } from "../place";
 
-/** Codes of findings about files of the viewer: the robot is shown in spite of them. */
-const NOT_OF_DESCRIPTIONS = /^(RVIZ|VIEW)/;
-/** Codes of warnings without which no user understands the scene: the robot has fallen out of the world, or all its meshes are missing. */
-const TELLING = new Set(["SIM143", "VIEW207"]);
+/** Codes of findings on files of the viewer, which do not prevent the robot from being shown. */
+const VIEWER_CODES = /^(RVIZ|VIEW)/;
+/**
+ * Codes of warnings that the user needs to understand the scene: the robot has fallen out of the world, or all its
+ * meshes are missing.
+ */
+const EXPLAINING_CODES = new Set(["SIM143", "VIEW207"]);
 
 /**
- * Over the scene while the description has an error: its cause, its hint, and whether the robot seen is the last good one.
- * Where there is none, a warning that tells why the scene is as it is, until it is closed.
+ * The banner over the scene while the description has an error: its cause, its hint, and whether the robot shown is the
+ * last valid one. Without an error it shows a warning that explains the scene, until the user closes it.
  */
 export class DiagnosticsBanner {
   readonly element = h("div", { class: "banner", role: "alert" });
@@ -27,15 +30,15 @@ export class DiagnosticsBanner {
     this.update();
   }
 
-  /** Whether a description is broken. */
-  get tellsError(): boolean {
-    return this.session.diagnostics.some(({ severity, code }) => severity === "error" && !NOT_OF_DESCRIPTIONS.test(code));
+  /** Whether a description has an error. */
+  get hasError(): boolean {
+    return this.session.diagnostics.some(({ severity, code }) => severity === "error" && !VIEWER_CODES.test(code));
   }
 
   private update(): void {
     const all = this.session.diagnostics;
     const errors = all.filter((item) => item.severity === "error");
-    const first = errors[0] ?? all.find(({ code, message }) => TELLING.has(code) && !this.closed.has(message));
+    const first = errors[0] ?? all.find(({ code, message }) => EXPLAINING_CODES.has(code) && !this.closed.has(message));
     this.element.hidden = !first;
     if (!first) return;
     const words = strings.diagnostics;
@@ -62,8 +65,8 @@ export class DiagnosticsBanner {
     this.update();
   }
 
-  /** A description with an error changes nothing: what is there when the error comes was there before. */
+  /** Whether the robot shown is an earlier one: a description with an error does not replace it. */
   private keepsRobot(error: DiagnosticItem): boolean {
-    return this.session.robot !== null && !NOT_OF_DESCRIPTIONS.test(error.code);
+    return this.session.robot !== null && !VIEWER_CODES.test(error.code);
   }
 }

@@ -7,16 +7,19 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 
 const ROBOT_MODEL = "rviz_default_plugins/RobotModel";
-/** A frame that comes so soon is not missed, ms: localisation takes its time. */
+/** The notice waits so long (ms) for the frame: localization takes a moment to publish it. */
 const PATIENCE_MS = 3000;
 
-/** Over the scene while the Fixed Frame does not exist: what is missing, and a button for a frame that does, with the robot. */
+/**
+ * The notice over the scene while the Fixed Frame does not exist: its name, and a button that uses an existing frame
+ * and adds the robot.
+ */
 export class FrameNotice {
   readonly element = h("div", { class: "line-notice failed", role: "alert", data: { notice: "frame" } });
   private timer: ReturnType<typeof setTimeout> | undefined;
-  /** The frame that the notice names or named. */
-  private told: string | null = null;
-  private robot: TopicChoice | null = null;
+  /** The missing frame for which the notice was last shown or scheduled. */
+  private missingFrame: string | null = null;
+  private robotTopic: TopicChoice | null = null;
 
   constructor(private readonly session: Session) {
     const { displays, frames, configuration } = session;
@@ -25,8 +28,8 @@ export class FrameNotice {
     for (const signal of [displays.treeChanged, frames.tableChanged]) signal.on(review);
     displays.statusChanged.on(review);
     displays.valueChanged.on(review);
-    configuration.offered.on(({ topics }) => {
-      this.robot = topics.find((each) => each.classes.length > 0 && obviousDisplay(each) === ROBOT_MODEL) ?? null;
+    configuration.choicesArrived.on(({ topics }) => {
+      this.robotTopic = topics.find((topic) => topic.classes.length > 0 && obviousDisplay(topic) === ROBOT_MODEL) ?? null;
       if (!this.element.hidden) this.show();
     });
   }
@@ -38,29 +41,29 @@ export class FrameNotice {
 
   private review(): void {
     const { missing } = this;
-    if (missing === this.told) {
+    if (missing === this.missingFrame) {
       if (!this.element.hidden) this.show();
       return;
     }
     clearTimeout(this.timer);
-    this.told = missing;
+    this.missingFrame = missing;
     this.element.hidden = true;
     if (missing === null) return;
-    this.session.configuration.askChoices();
+    this.session.configuration.requestChoices();
     this.timer = setTimeout(() => this.show(), PATIENCE_MS);
   }
 
   private show(): void {
     const words = strings.scene.frame;
     const root = largestRoot(this.session.frames);
-    if (this.told === null || root === null) return;
+    if (this.missingFrame === null || root === null) return;
     const close = button(strings.diagnostics.close, () => (this.element.hidden = true), "tool bare", icon("close"));
-    const { robot } = this;
-    const adds = robot !== null && !this.session.displays.displays.some(({ cls }) => cls === ROBOT_MODEL);
+    const { robotTopic } = this;
+    const adds = robotTopic !== null && !this.session.displays.displays.some(({ cls }) => cls === ROBOT_MODEL);
     const label = adds ? words.useWithRobot(root) : words.use(root);
-    const use = button(label, () => this.use(root, adds ? robot.topic : null), "tool framed primary", label);
+    const use = button(label, () => this.use(root, adds ? robotTopic.topic : null), "tool framed primary", label);
     this.element.replaceChildren(
-      h("header", {}, h("strong", {}, words.missing(this.told)), close),
+      h("header", {}, h("strong", {}, words.missing(this.missingFrame)), close),
       h("div", {}, words.hint),
       h("div", { class: "notice-choices" }, use),
     );

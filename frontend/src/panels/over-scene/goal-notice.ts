@@ -3,7 +3,10 @@ import { icon } from "../../icons";
 import type { NavigationState } from "../../state/monitor/navigation";
 import { strings } from "../../strings";
 
-/** Over the scene after a goal of navigation failed: why, until another goal is accepted or the user closes it. */
+/**
+ * The notice over the scene after a navigation goal failed: the reason, until another goal is accepted or the user
+ * closes it.
+ */
 export class GoalNotice {
   readonly element = h("div", { class: "line-notice failed", role: "alert", data: { notice: "goal" } });
 

@@ -1,17 +1,17 @@
 import { button, coalesced, h } from "../../dom";
 import { icon } from "../../icons";
 import type { Inspected } from "../../state/inspect";
-import { general } from "../../state/number-text";
+import { formatGeneral } from "../../state/number-text";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import { closesOutside } from "../../widgets/popover";
+import { closeOutside } from "../../widgets/popover";
 import { currentModel } from "../description/current-model";
 
 const CHOICES = ["centers", "boxes", "ellipsoids", "joints", "contrast", "frames"] as const;
-/** The slider's ends are a quarter and four times the size. */
+/** The ends of the slider are powers of two: a quarter of the size, and four times the size. */
 const SCALE_STEPS = 2;
 
-/** A menu over the scene: what is to be shown of the invisible, and what is odd about it. */
+/** The menu over the scene that shows invisible properties, and the findings on them. */
 export class InspectMenu {
   readonly element = h("div", { class: "inspect" });
   private readonly card = h("div", { class: "inspect-card", role: "group", aria: { label: strings.description.inspect.button } });
@@ -23,7 +23,7 @@ export class InspectMenu {
   private readonly open: HTMLButtonElement;
   private release: () => void = () => undefined;
 
-  /** @param resized called when it needs another part of the scene than before. */
+  /** @param resized - called when the menu covers another part of the scene than before. */
   constructor(
     private readonly session: Session,
     private readonly resized: () => void,
@@ -44,7 +44,7 @@ export class InspectMenu {
 
   private toggle(open: boolean): void {
     this.release();
-    this.release = open ? closesOutside([this.element], (back) => this.closed(back)) : () => undefined;
+    this.release = open ? closeOutside([this.element], (back) => this.closed(back)) : () => undefined;
     this.card.hidden = !open;
     this.open.setAttribute("aria-expanded", String(open));
     this.resized();
@@ -90,7 +90,7 @@ export class InspectMenu {
     const { inspect } = this.session;
     const model = currentModel(this.session);
     for (const [what, box] of this.boxes) box.checked = inspect.current[what];
-    this.open.classList.toggle("on", inspect.any);
+    this.open.classList.toggle("on", inspect.isActive);
     const deepest = model?.deepest ?? 0;
     this.depth.parentElement?.toggleAttribute("hidden", !inspect.current.frames);
     this.depth.max = String(deepest);
@@ -106,14 +106,14 @@ export class InspectMenu {
     this.showFacts();
   }
 
-  /** Shows what the robot lacks, its mass, and each implausible link, which a click selects. */
+  /** Shows what the robot lacks, its mass, and each implausible link; a click on a link selects it. */
   private showFacts(): void {
     const missing = this.missing().map((text) => h("div", { class: "missing" }, text));
     this.facts.replaceChildren(...missing, ...this.massFacts());
     this.facts.hidden = this.facts.childElementCount === 0;
   }
 
-  /** A choice that shows nothing says why. */
+  /** Returns the reasons why enabled choices show nothing. */
   private missing(): string[] {
     const words = strings.description.inspect;
     const { robot, inspect } = this.session;
@@ -141,7 +141,7 @@ export class InspectMenu {
       return h("li", { data: { link } }, row);
     });
     return [
-      h("div", {}, words.mass(general(mass))),
+      h("div", {}, words.mass(formatGeneral(mass))),
       h("div", {}, links.size > 0 ? words.implausible(links.size) : words.plausible),
       h("ul", {}, ...rows),
     ];

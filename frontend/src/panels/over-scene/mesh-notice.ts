@@ -3,10 +3,10 @@ import { bytesText } from "../../scene/meshes/mesh-error";
 import type { MeshLoad, MeshProgress } from "../../state/mesh-progress";
 import { strings } from "../../strings";
 
-/** More are counted. */
-const MOST_LINES = 4;
+/** The maximum number of files listed; the others are counted. */
+const MAX_LINES = 4;
 
-/** Over the scene while mesh files take longer than a moment: which, and how far they are. */
+/** The notice over the scene while mesh files take longer than a moment: the files and their progress. */
 export class MeshNotice {
   readonly element = h("div", { class: "line-notice", role: "status", data: { notice: "meshes" } });
 
@@ -19,13 +19,13 @@ export class MeshNotice {
     const words = strings.meshes.progress;
     const { loads } = this.progress;
     this.element.hidden = loads.length === 0;
-    const lines = loads.slice(0, MOST_LINES).map((load) => h("div", {}, h("b", {}, load.name), ` ${progressText(load)}`));
-    const more = loads.length > MOST_LINES ? h("div", {}, words.more(String(loads.length - MOST_LINES))) : "";
+    const lines = loads.slice(0, MAX_LINES).map((load) => h("div", {}, h("b", {}, load.name), ` ${progressText(load)}`));
+    const more = loads.length > MAX_LINES ? h("div", {}, words.more(String(loads.length - MAX_LINES))) : "";
     this.element.replaceChildren(h("strong", {}, words.title), ...lines, more);
   }
 }
 
-/** The progress of a file: bytes of bytes, then that it is read. */
+/** Returns the progress of a file: bytes of the total, or that it is being read. */
 export function progressText({ bytes, total, stage }: Readonly<MeshLoad>): string {
   const words = strings.meshes.progress;
   if (stage === "reading") return words.reading;

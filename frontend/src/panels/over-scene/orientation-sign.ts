@@ -44,7 +44,7 @@ export class OrientationSign {
       label.setAttribute("y", String(y * (ARM + 6)));
       return { arm, depth };
     });
-    // What points towards the viewer is drawn last.
+    // Draw arms that point towards the viewer last.
     drawn.sort((a, b) => a.depth - b.depth);
     this.svg.append(...drawn.map(({ arm }) => arm));
   }

@@ -3,8 +3,10 @@ import type { Signal } from "../../signal";
 import type { MenuChoice, SceneMenu } from "../../state/scene-menu";
 import { openMenu } from "../../widgets/menu";
 
-/** Opens the menus of things in the scene where they are asked for; a choice with others below it opens those. */
-export function showSceneMenus(box: HTMLElement, asked: Signal<SceneMenu>): void {
+/**
+ * Opens context menus of objects in the scene at the requested positions; a choice with submenu entries opens those.
+ */
+export function bindSceneMenus(box: HTMLElement, asked: Signal<SceneMenu>): void {
   const anchor = h("div", { class: "scene-menu-anchor" });
   box.append(anchor);
   const open = (choices: readonly MenuChoice[]): void => {

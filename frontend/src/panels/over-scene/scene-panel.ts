@@ -6,17 +6,17 @@ import type { Panel } from "../panel";
 import { talkButton } from "../voice/talk-button";
 import { VoiceNotice } from "../voice/voice-notice";
 import { ArgumentFormCard } from "./argument-form";
-import { CardColumn, type Below } from "./card-column";
+import { CardColumn, type SceneBelow } from "./card-column";
 import { ConnectionNotice } from "./connection-notice";
 import { DiagnosticsBanner } from "./diagnostics-banner";
 import { FrameNotice } from "./frame-notice";
 import { GoalNotice } from "./goal-notice";
 import { InspectMenu } from "./inspect-menu";
-import { LineNotice } from "./line-notice";
+import { SlowNotice } from "./slow-notice";
 import { MeshNotice } from "./mesh-notice";
 import { OrientationSign } from "./orientation-sign";
 import { OwnerNotice } from "./owner-notice";
-import { showSceneMenus } from "./scene-menu";
+import { bindSceneMenus } from "./scene-menu";
 import { SelectionCard } from "./selection-card";
 import { SimulationBar } from "./simulation-bar";
 import { ToolNotice } from "./tool-notice";
@@ -27,9 +27,9 @@ export class ScenePanel implements Panel {
   readonly id = "scene";
   readonly icon = "cube";
   readonly element: HTMLElement;
-  /** Where the canvas goes. */
+  /** The element that holds the canvas. */
   readonly container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
-  /** The scene and its overlays: the content of full screen. */
+  /** The scene and its overlays, which full screen shows. */
   readonly box: HTMLElement;
   private readonly column = new CardColumn();
   private readonly notices = h("div", { class: "notices" });
@@ -39,34 +39,34 @@ export class ScenePanel implements Panel {
     const toolbar = new Toolbar(session.tools, fit, showKeys, talkButton(session.voice, "scene-tool small talk"));
     const banner = new DiagnosticsBanner(session, showDiagnostics);
     const notice = new ConnectionNotice(session.connection);
-    const card = new SelectionCard(session, this.column, () => session.editing.wanted.emit());
+    const card = new SelectionCard(session, this.column, () => session.editing.editRequested.emit());
     const inspect = new InspectMenu(session, this.column.changed);
     const sign = new OrientationSign(session);
     const simulation = new SimulationBar(session.simulation, session.modelling, commands);
     const form = new ArgumentFormCard(session.connection);
     this.notices.append(simulation.element, notice.element, banner.element, form.element);
-    const told = [
+    const notices = [
       new ToolNotice(session.tools),
       new GoalNotice(session.monitor.navigation),
       new FrameNotice(session),
-      new LineNotice(session),
+      new SlowNotice(session),
       new OwnerNotice(session),
       new MeshNotice(session.meshProgress),
       new VoiceNotice(session.voice, session.words),
     ];
-    this.column.element.append(inspect.element, card.element, ...told.map((each) => each.element));
+    this.column.element.append(inspect.element, card.element, ...notices.map((each) => each.element));
     this.box = h(
       "div",
       { class: "scene-box" },
       this.container,
       h("div", { class: "overlay" }, this.notices, this.column.element, this.waiting, sign.element),
     );
-    showSceneMenus(this.box, session.sceneMenu);
+    bindSceneMenus(this.box, session.sceneMenu);
     this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);
     const update = (): void => {
       const awaited = session.displays.displays.some(({ cls, enabled }) => enabled && cls.endsWith("/RobotModel"));
-      // Where a description is broken the banner says why none comes.
-      this.waiting.hidden = session.robot !== null || !awaited || banner.tellsError;
+      // If a description has an error, the banner explains why no robot appears.
+      this.waiting.hidden = session.robot !== null || !awaited || banner.hasError;
     };
     session.diagnosticsChanged.on(update);
     session.robotChanged.on(update);
@@ -74,9 +74,9 @@ export class ScenePanel implements Panel {
     session.displays.enabledChanged.on(update);
   }
 
-  /** Connects the cards over the scene with it. */
-  lieOver(scene: Below): void {
-    this.column.lieOver(scene);
+  /** Connects the cards with the scene below them. */
+  connectScene(scene: SceneBelow): void {
+    this.column.connectScene(scene);
     new ResizeObserver(() => scene.makeRoomAbove(this.notices.offsetHeight > 0 ? this.notices.offsetTop + this.notices.offsetHeight : 0)).observe(this.notices);
   }
 }

@@ -6,15 +6,15 @@ import { strings } from "../../strings";
 import { placeText, shortPath } from "../place";
 import type { CardColumn } from "./card-column";
 
-/** The selected link: where it is written, and through which macros it came. */
+/** The selected link: its place in the files, and the macros that it came from. */
 export class SelectionCard {
   readonly element = h("div", { class: "selection-card", role: "status" });
 
   private folded = false;
 
   /**
-   * @param column it is for; where it would cover a robot, only its head is shown until the user unfolds it.
-   * @param edit what edits the link; null where nothing does.
+   * @param column - the column of the card. Where the card would cover a robot, it is folded until the user unfolds it.
+   * @param edit - starts editing the link; null if links cannot be edited.
    */
   constructor(
     private readonly session: Session,
@@ -30,7 +30,7 @@ export class SelectionCard {
   private update(): void {
     const { selected } = this.session.selection;
     const wasHidden = this.element.hidden;
-    // Whoever edits the link has it before him, and needs the room for the handles.
+    // While the link is edited, the Editing panel shows it, and its handles need the space.
     this.element.hidden = !selected || this.session.editing.active;
     if (!selected || this.session.editing.active) {
       if (!wasHidden && !this.folded) this.column.changed();
@@ -42,16 +42,16 @@ export class SelectionCard {
     const clear = button(words.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
     const edit = this.edit && button(strings.editing.editHint, this.edit, "tool bare edit-link", icon("handles"));
     this.element.replaceChildren(
-      h("header", {}, icon("cube"), h("strong", { title: words.title }, link.name), h("span", { class: "spacer" }), edit, this.folder(), clear),
+      h("header", {}, icon("cube"), h("strong", { title: words.title }, link.name), h("span", { class: "spacer" }), edit, this.foldButton(), clear),
       ...details(link),
-      place(link, (file, line) => this.session.description.placeAsked.emit({ file, line })),
+      place(link, (file, line) => this.session.description.placeRequested.emit({ file, line })),
       ...trail(link),
     );
     if (link.place) this.session.connection.send({ type: "ask_provenance", display: selected.display, link: link.name });
   }
 
-  /** The button that leaves only the link's name of the card, or shows all again. */
-  private folder(): HTMLButtonElement {
+  /** Returns the button that folds the card to the link's name, or unfolds it. */
+  private foldButton(): HTMLButtonElement {
     const words = strings.selection;
     const turn = (): void => {
       show(!this.folded);
@@ -67,7 +67,7 @@ export class SelectionCard {
     return fold;
   }
 
-  /** Calls and values take the server a moment; they come in the place of the bare trail. */
+  /** Replaces the plain trail by the calls and values, which the server sends a moment later. */
   private show(provenance: LinkProvenance): void {
     const selected = this.session.selection.selected;
     if (selected?.display !== provenance.display || selected.link.name !== provenance.link) return;

@@ -9,7 +9,7 @@ import { SpawnDialog } from "./spawn-dialog";
 
 const NOTICE_MS = 8000;
 
-/** Play, pause, step, reset, and how fast time passes: over the scene while there is a simulation. */
+/** The toolbar over the scene while there is a simulation: play, pause, step, reset, and the real-time factor. */
 export class SimulationBar {
   readonly element: HTMLElement;
   private readonly play: HTMLButtonElement;
@@ -17,9 +17,9 @@ export class SimulationBar {
   private readonly factor = h("output", { class: "simulation-figure", title: strings.simulation.factorHint });
   private readonly time = h("output", { class: "simulation-figure wide", title: strings.simulation.timeHint });
   private readonly notice = h("div", { class: "simulation-notice", role: "status" });
-  private readonly model: HTMLButtonElement;
+  private readonly modelButton: HTMLButtonElement;
   private timer = 0;
-  private asking: SpawnDialog | null = null;
+  private spawnDialog: SpawnDialog | null = null;
 
   constructor(
     private readonly simulation: SimulationState,
@@ -31,13 +31,13 @@ export class SimulationBar {
     this.step = button(words.step, () => simulation.control("step"), "scene-tool small", icon("step"));
     const reset = button(words.reset, () => simulation.control("reset"), "scene-tool small", icon("reset"));
     const add = button(words.spawn, () => this.askSpawn(simulation.freePlace()), "scene-tool small", icon("plus"));
-    this.model = button(strings.modelling.begin, () => modelling.setActive(!modelling.active), "scene-tool small", icon("build"));
-    const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: words.label } }, this.play, this.step, reset, add, this.model, this.factor, this.time);
+    this.modelButton = button(strings.modelling.begin, () => modelling.setActive(!modelling.active), "scene-tool small", icon("build"));
+    const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: words.label } }, this.play, this.step, reset, add, this.modelButton, this.factor, this.time);
     this.element = h("div", { class: "simulation-bar" }, bar, new ModellingBar(modelling, commands).element, this.notice);
     simulation.changed.on(() => this.show());
     modelling.changed.on(() => this.show());
-    simulation.refused.on((text) => this.tell(text));
-    simulation.spawnAsked.on((position) => this.askSpawn(position));
+    simulation.refused.on((text) => this.showNotice(text));
+    simulation.spawnRequested.on((position) => this.askSpawn(position));
     this.show();
   }
 
@@ -60,21 +60,21 @@ export class SimulationBar {
   private showModelling(): void {
     const { available, active } = this.modelling;
     const label = active ? strings.modelling.end : strings.modelling.begin;
-    this.model.hidden = !available;
-    this.model.title = label;
-    this.model.setAttribute("aria-label", label);
-    this.model.setAttribute("aria-pressed", String(active));
-    this.model.classList.toggle("active", active);
+    this.modelButton.hidden = !available;
+    this.modelButton.title = label;
+    this.modelButton.setAttribute("aria-label", label);
+    this.modelButton.setAttribute("aria-pressed", String(active));
+    this.modelButton.classList.toggle("active", active);
   }
 
-  private tell(text: string): void {
-    if (this.asking !== null) return; // the dialog shows the answer
+  private showNotice(text: string): void {
+    if (this.spawnDialog !== null) return; // the dialog shows the answer
     clearTimeout(this.timer);
     this.notice.textContent = text;
     this.timer = window.setTimeout(() => (this.notice.textContent = ""), NOTICE_MS);
   }
 
   private askSpawn(position: readonly number[]): void {
-    this.asking = new SpawnDialog(this.simulation, this.modelling, position, () => (this.asking = null));
+    this.spawnDialog = new SpawnDialog(this.simulation, this.modelling, position, () => (this.spawnDialog = null));
   }
 }

@@ -6,11 +6,13 @@ import type { SimulationState } from "../../state/simulation";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
 
-/** Puts a model into the world: one of those on the search path, or a file; it stays open until the model exists. */
+/**
+ * The dialog that adds a model to the world, from the search path or from a file; it stays open until the model exists.
+ */
 export class SpawnDialog {
   private readonly dialog: Dialog;
   private readonly address = h("input", { class: "field", aria: { label: strings.simulation.address } });
-  private readonly places: readonly HTMLInputElement[];
+  private readonly positionFields: readonly HTMLInputElement[];
   private readonly list = h("div", { class: "choices", role: "listbox", aria: { label: strings.simulation.models } });
   private readonly problem = h("p", { class: "problem", role: "alert" });
   private models: readonly ModelChoice[] | null = null;
@@ -23,8 +25,8 @@ export class SpawnDialog {
   ) {
     const words = strings.simulation;
     this.address.placeholder = words.addressHint;
-    this.address.addEventListener("input", () => this.edited());
-    this.places = position.map((value, axis) => {
+    this.address.addEventListener("input", () => this.onAddressChanged());
+    this.positionFields = position.map((value, axis) => {
       const field = h("input", { class: "field number", aria: { label: "xyz"[axis] ?? "" } });
       field.value = String(Math.round(value * 1000) / 1000);
       return field;
@@ -32,36 +34,36 @@ export class SpawnDialog {
     const rows = [
       h("label", { class: "spawn-row" }, h("span", {}, words.address), this.address),
       this.list,
-      h("div", { class: "spawn-row" }, h("span", {}, words.position), h("span", { class: "spawn-places" }, ...this.places)),
+      h("div", { class: "spawn-row" }, h("span", {}, words.position), h("span", { class: "spawn-places" }, ...this.positionFields)),
       this.problem,
     ];
     const choices = [{ label: strings.shell.cancel }, { label: words.spawn, main: true, run: () => this.run() }];
     this.dialog = new Dialog(words.spawnTitle, rows, choices, "spawn-dialog");
     const forget = [
-      modelling.offered.on((models) => {
+      modelling.modelsArrived.on((models) => {
         this.models = models;
         this.fill();
       }),
       simulation.added.on(() => this.dialog.close()),
-      simulation.refused.on((text) => this.tell(text)),
+      simulation.refused.on((text) => this.showProblem(text)),
     ];
     this.dialog.element.addEventListener("close", () => {
       for (const each of forget) each();
       closed();
     });
     this.dialog.open(this.address);
-    this.edited();
-    modelling.askModels();
+    this.onAddressChanged();
+    modelling.requestModels();
   }
 
-  /** Removes the message about another address. */
-  private edited(): void {
+  /** Removes the message about the previous address. */
+  private onAddressChanged(): void {
     this.fill();
     this.dialog.ready = this.address.value.trim() !== "";
     this.problem.textContent = "";
   }
 
-  /** The models that have what is typed in their names, until one of them, or a path, is chosen. */
+  /** Lists the models whose names contain the typed text; all models once one of them is chosen. */
   private fill(): void {
     const words = strings.simulation;
     const typed = this.address.value.trim();
@@ -79,7 +81,7 @@ export class SpawnDialog {
     const { name, address } = model;
     const choose = (): void => {
       this.address.value = address;
-      this.edited();
+      this.onAddressChanged();
       this.list.querySelector<HTMLElement>("[aria-selected=true]")?.focus();
     };
     const parts = [icon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
@@ -96,7 +98,7 @@ export class SpawnDialog {
 
   private run(): boolean {
     const typed = this.address.value.trim();
-    const numbers = this.places.map((field) => Number(field.value));
+    const numbers = this.positionFields.map((field) => Number(field.value));
     if (typed === "" || numbers.some((number) => !Number.isFinite(number))) return false;
     const named = this.models?.find(({ name }) => name === typed);
     this.simulation.spawn(named?.address ?? typed, numbers);
@@ -106,7 +108,7 @@ export class SpawnDialog {
     return false;
   }
 
-  private tell(text: string): void {
+  private showProblem(text: string): void {
     this.problem.classList.add("problem");
     this.problem.textContent = text;
     this.dialog.ready = true;

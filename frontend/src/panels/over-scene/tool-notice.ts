@@ -1,16 +1,16 @@
 import { h } from "../../dom";
 import type { ToolsState } from "../../state/tools";
 
-const TOLD_MS = 4000;
+const NOTICE_MS = 4000;
 
-/** Over the scene for some seconds: why the tool in hand did not execute its request. */
+/** The notice over the scene, for some seconds, that explains why the active tool did not do what was requested. */
 export class ToolNotice {
   readonly element = h("div", { class: "line-notice", role: "status", data: { notice: "tool" } });
   private timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(tools: ToolsState) {
     this.element.hidden = true;
-    tools.told.on((text) => this.show(text));
+    tools.noticeShown.on((text) => this.show(text));
     tools.currentChanged.on(() => this.show(""));
   }
 
@@ -18,6 +18,6 @@ export class ToolNotice {
     clearTimeout(this.timer);
     this.element.hidden = text === "";
     this.element.textContent = text;
-    if (text !== "") this.timer = setTimeout(() => this.show(""), TOLD_MS);
+    if (text !== "") this.timer = setTimeout(() => this.show(""), NOTICE_MS);
   }
 }

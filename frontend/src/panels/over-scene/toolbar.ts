@@ -5,16 +5,16 @@ import type { ToolState, ToolsState } from "../../state/tools";
 import { strings } from "../../strings";
 import { openMenu } from "../../widgets/menu";
 
-/** Shows all of the robot, or of the selection. */
+/** The key that fits the whole robot, or the selection, into the view. */
 export const FIT_KEY = "Shift F";
 
-/** The name of a tool in the user's language. */
+/** Returns the name of a tool in the user's language. */
 export function toolName({ cls, name }: Pick<ToolState, "cls" | "name">): string {
   const names: Readonly<Record<string, string>> = strings.tools.names;
   return names[cls] ?? name;
 }
 
-/** RViz's toolbar above the scene: the tools of the file, in their order. */
+/** RViz's toolbar above the scene, with the tools of the file in their order. */
 export class Toolbar {
   readonly element = h("div", { class: "scene-tools", role: "toolbar", aria: { label: strings.tools.label } });
   private readonly buttons = new Map<ToolState, HTMLButtonElement>();
@@ -23,12 +23,12 @@ export class Toolbar {
     private readonly tools: ToolsState,
     private readonly fit: () => void,
     private readonly showKeys: () => void,
-    /** The elements right of the tools. */
+    /** The button to the right of the tools. */
     private readonly talk: HTMLElement,
   ) {
     tools.listChanged.on(() => this.build());
     tools.currentChanged.on(() => this.mark());
-    this.element.addEventListener("keydown", (event) => this.keyed(event));
+    this.element.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.build();
   }
 
@@ -39,7 +39,7 @@ export class Toolbar {
     for (const tool of tools.tools) this.buttons.set(tool, this.buttonOf(tool));
     const add: HTMLButtonElement = button(
       words.add,
-      () => openMenu(add, tools.classes.map((each) => ({ label: toolName(each), run: () => tools.add(each.cls) }))),
+      () => openMenu(add, tools.classes.map((tool) => ({ label: toolName(tool), run: () => tools.add(tool.cls) }))),
       "scene-tool small",
       icon("plus"),
     );
@@ -64,23 +64,23 @@ export class Toolbar {
     const words = strings.tools;
     const label = tool.supported && entry ? words.withKey(name, entry.key) : words.unknown(tool.cls);
     const sign = icon(entry?.icon ?? "unknown");
-    const made = button(label, () => this.tools.choose(tool), "scene-tool", sign, h("span", { class: "tool-name" }, name));
-    made.setAttribute("aria-label", name);
-    made.disabled = !tool.supported;
-    if (entry) made.setAttribute("aria-keyshortcuts", entry.key);
-    return made;
+    const toolButton = button(label, () => this.tools.choose(tool), "scene-tool", sign, h("span", { class: "tool-name" }, name));
+    toolButton.setAttribute("aria-label", name);
+    toolButton.disabled = !tool.supported;
+    if (entry) toolButton.setAttribute("aria-keyshortcuts", entry.key);
+    return toolButton;
   }
 
   private mark(): void {
     const { current } = this.tools;
-    for (const [tool, made] of this.buttons) {
-      made.setAttribute("aria-pressed", String(tool === current));
-      made.classList.toggle("active", tool === current);
+    for (const [tool, toolButton] of this.buttons) {
+      toolButton.setAttribute("aria-pressed", String(tool === current));
+      toolButton.classList.toggle("active", tool === current);
     }
   }
 
-  /** Arrow keys go from button to button, as in any toolbar. */
-  private keyed(event: KeyboardEvent): void {
+  /** Moves to the next or previous button with the arrow keys, as in any toolbar. */
+  private onKeyDown(event: KeyboardEvent): void {
     const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
     if (step === 0) return;
     const all = [...this.element.querySelectorAll<HTMLButtonElement>("button:not(:disabled)")];

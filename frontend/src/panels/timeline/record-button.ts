@@ -2,16 +2,16 @@ import { button, h } from "../../dom";
 import type { RecordedFile } from "../../protocol";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import { Dialog, tell } from "../../widgets/dialog";
+import { Dialog, showNotice } from "../../widgets/dialog";
 import { openMenu, type MenuEntry } from "../../widgets/menu";
 import { saveFrom } from "../../widgets/save-file";
 import { chooseTopics } from "./record-dialog";
 import { amountText, lengthText, secondsText } from "./timeline-text";
 
-/** Files that the menu offers. */
-const MOST_FILES = 5;
+/** The number of recorded files that the menu lists. */
+const MAX_FILES = 5;
 
-/** The button in the timeline that starts and ends recordings, which the server writes, and saves the last minutes. */
+/** The button in the timeline that starts and stops recordings, which the server writes, and saves the history. */
 export class RecordButton {
   readonly element: HTMLElement;
   private readonly button: HTMLButtonElement;
@@ -22,8 +22,8 @@ export class RecordButton {
     this.button = button(strings.recording.record, () => this.click(), "timeline-live timeline-record", "");
     this.element = h("span", { class: "timeline-recorder" }, this.problem, this.button);
     recording.changed.on(() => this.show());
-    recording.made.on((file) => this.offer(file));
-    recording.refused.on((why) => tell(strings.recording.refused, why));
+    recording.made.on((file) => this.showFile(file));
+    recording.refused.on((why) => showNotice(strings.recording.refused, why));
     this.show();
   }
 
@@ -76,20 +76,20 @@ export class RecordButton {
       { label: words.all, icon: "record", hint: words.allHint, run: () => recording.record([]) },
       { label: words.chosen, run: () => chooseTopics(this.session) },
       ...(timeline.timeline?.live === true ? minutes : []),
-      ...recording.files.slice(0, MOST_FILES).map(
+      ...recording.files.slice(0, MAX_FILES).map(
         (file, number): MenuEntry => ({
           label: words.fetch(file.name),
           hint: `${file.path}\n${amountText(file.length, file.size)}`,
           icon: "download",
           separate: number === 0,
-          run: () => fetchFile(file),
+          run: () => downloadFile(file),
         }),
       ),
     ];
   }
 
-  /** Tells where a recording is, and offers to show or fetch it. */
-  private offer(file: RecordedFile): void {
+  /** Shows where a recording was saved, and offers to open or download it. */
+  private showFile(file: RecordedFile): void {
     const words = strings.recording;
     new Dialog(
       words.made,
@@ -104,7 +104,7 @@ export class RecordButton {
         {
           label: words.download,
           run: () => {
-            fetchFile(file);
+            downloadFile(file);
             return undefined;
           },
         },
@@ -113,7 +113,7 @@ export class RecordButton {
           label: words.openHere,
           main: true,
           run: () => {
-            this.session.recording.wanted.emit(file);
+            this.session.recording.viewRequested.emit(file);
             return undefined;
           },
         },
@@ -122,6 +122,6 @@ export class RecordButton {
   }
 }
 
-function fetchFile(file: RecordedFile): void {
+function downloadFile(file: RecordedFile): void {
   saveFrom(`${file.name}.mcap`, new URL(file.url, document.baseURI).href);
 }

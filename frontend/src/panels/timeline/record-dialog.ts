@@ -27,15 +27,15 @@ export function chooseTopics(session: Session): void {
     "add-dialog",
   );
   const fill = (): void => {
-    // What is listed stays where the mouse may be: only topics that are new are added.
+    // Listed rows must not move under the mouse: only new topics are added.
     const known = new Set([...list.querySelectorAll("input")].map(({ value }) => value));
     list.append(...topics.topics.filter(({ name }) => !known.has(name)).map((topic) => row(topic, chosen, () => (dialog.ready = chosen.size > 0))));
   };
-  topics.list(dialog, true);
+  topics.watchList(dialog, true);
   const forget = topics.listChanged.on(fill);
   dialog.element.addEventListener("close", () => {
     forget();
-    topics.list(dialog, false);
+    topics.watchList(dialog, false);
   });
   fill();
   dialog.ready = false;

@@ -4,16 +4,18 @@ import type { TimeControlState } from "../../state/time";
 import { strings } from "../../strings";
 import type { TimeStrip } from "../dock/time-strip";
 
-/** At the foot of the page: the button that unfolds the fields of RViz's Time panel; it says when time stands still. */
+/**
+ * The button in the foot of the page that unfolds the fields of RViz's Time panel, and shows whether time is paused.
+ */
 export class TimeFold {
   readonly element: HTMLButtonElement;
 
   constructor(time: TimeControlState, strip: TimeStrip) {
     const word = h("span", {});
-    this.element = button(strings.time.fold, () => strip.unfold(!strip.isUnfolded), "tool bare time-fold", icon("clock"), word);
+    this.element = button(strings.time.fold, () => strip.setUnfolded(!strip.isUnfolded), "tool bare time-fold", icon("clock"), word);
     this.element.setAttribute("aria-label", strings.panels.time);
     const show = (): void => {
-      this.element.hidden = !strip.isThere;
+      this.element.hidden = !strip.exists;
       this.element.setAttribute("aria-expanded", String(strip.isUnfolded));
       this.element.classList.toggle("active", time.paused);
       word.textContent = time.paused ? strings.time.paused : "";

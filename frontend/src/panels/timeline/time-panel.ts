@@ -2,13 +2,16 @@ import { button, h } from "../../dom";
 import { icon } from "../../icons";
 import type { SyncMode, TimeControlState, Times } from "../../state/time";
 import { strings } from "../../strings";
-import { whenSeen } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 
-/** Of the figures. Without a GPU each change of any of them costs as much as half a frame of the scene. */
+/**
+ * The interval at which the times are updated. Without a GPU, each change of text costs as much as half a frame of the
+ * scene.
+ */
 const REFRESH_MS = 1000;
 const MODES: readonly SyncMode[] = ["Off", "Exact", "Approximate"];
-const FIGURES: readonly (keyof Times)[] = ["ros", "rosElapsed", "wall", "wallElapsed"];
+const TIME_FIELDS: readonly (keyof Times)[] = ["ros", "rosElapsed", "wall", "wallElapsed"];
 
 /** RViz's Time panel. */
 export class TimePanel implements Panel {
@@ -18,11 +21,11 @@ export class TimePanel implements Panel {
   private readonly pause: HTMLButtonElement;
   private readonly mode = h("select", { class: "choice", title: strings.time.syncHint });
   private readonly source = h("select", { class: "choice", title: strings.time.sourceHint });
-  private readonly figures = FIGURES.map((name) => ({ name, output: h("output", { class: "figure" }) }));
+  private readonly figures = TIME_FIELDS.map((name) => ({ name, output: h("output", { class: "figure" }) }));
 
   private timer = 0;
 
-  /** @param close for the strip without a tab that this is below the scene. */
+  /** @param close - closes the panel while it is a strip without a tab below the scene. */
   constructor(
     private readonly time: TimeControlState,
     close: () => void,
@@ -47,8 +50,8 @@ export class TimePanel implements Panel {
     );
     time.changed.on(() => this.update());
     this.update();
-    // Clocks are asked for only while they are to be seen.
-    whenSeen(this.element, (seen) => {
+    // Request times only while they are visible.
+    onVisibilityChange(this.element, (seen) => {
       time.watch(seen);
       clearInterval(this.timer);
       if (seen) this.timer = window.setInterval(() => this.tick(), REFRESH_MS);

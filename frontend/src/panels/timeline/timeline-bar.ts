@@ -7,23 +7,23 @@ import type { Session } from "../../state/session";
 import { SPEEDS, type TimelineState } from "../../state/timeline";
 import { strings } from "../../strings";
 import { RecordButton } from "./record-button";
-import { agoText, clockText, densities, extentText, momentText, passedText } from "./timeline-text";
+import { agoText, clockText, densities, extentText, momentText, elapsedText } from "./timeline-text";
 
-/** From this part of its room on, what is kept is as much as there can be. */
-const FULL = 0.9;
+/** From this share of its memory limit on, the history counts as full. */
+const FULL_SHARE = 0.9;
 
-/** The tooltip about what is kept, and how to keep more where the room is used up. */
+/** Returns the tooltip on the history, and how to extend it if its memory is full. */
 function extentTip(extent: HistoryExtent): string {
   const text = strings.timeline.kept(extentText(extent), (extent.most / 1e6).toFixed(0));
-  return extent.size < FULL * extent.most ? text : `${text}\n${strings.timeline.more}`;
+  return extent.size < FULL_SHARE * extent.most ? text : `${text}\n${strings.timeline.more}`;
 }
 
-/** Parts of the whole that Page Up and Page Down go. */
-const PAGE = 0.1;
+/** The share of the timeline by which Page Up and Page Down move. */
+const PAGE_SHARE = 0.1;
 
 /**
- * Along the foot of the page while a recording is shown, or the last minutes are kept: play, step, speed, loop, and a line of its time to drag on.
- * Where neither is, only what records.
+ * The bar in the foot of the page while a recording or the history is shown: play, step, speed, loop, and a track to
+ * drag on. Otherwise it has only the record button.
  */
 export class TimelineBar {
   readonly element: HTMLElement;
@@ -31,13 +31,13 @@ export class TimelineBar {
   private readonly loop: HTMLButtonElement;
   private readonly speed = h("select", { class: "choice", title: strings.timeline.speed, aria: { label: strings.timeline.speed } });
   private readonly steps = h("select", { class: "choice timeline-steps", title: strings.timeline.steps, aria: { label: strings.timeline.steps } });
-  /** Whether what has the keyboard got it by a press, and not by Tab. */
+  /** Whether the focused element got the focus by a press rather than by Tab. */
   private pressed = false;
   private readonly time = h("output", { class: "timeline-time" });
   private readonly marks = h("canvas", { class: "timeline-marks" });
   private readonly head = h("div", { class: "timeline-head" });
-  private readonly part = h("div", { class: "timeline-part" });
-  /** Where the user has begun to mark a part, s since the epoch; null while none is being marked. */
+  private readonly markedPart = h("div", { class: "timeline-part" });
+  /** Where the user started to mark a part, s since the epoch; null while no part is being marked. */
   private markFrom: number | null = null;
   private readonly track: HTMLElement;
   private readonly live: HTMLButtonElement;
@@ -62,14 +62,14 @@ export class TimelineBar {
     this.speed.append(...SPEEDS.map((speed) => new Option(`${speed}×`, String(speed))));
     this.speed.addEventListener("change", () => timeline.setSpeed(Number(this.speed.value)));
     this.steps.addEventListener("change", () => (timeline.stepTopic = this.steps.value));
-    this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: words.position } }, this.marks, this.part, this.head);
+    this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: words.position } }, this.marks, this.markedPart, this.head);
     this.track.addEventListener("pointerdown", (event) => this.drag(event));
     this.track.addEventListener("pointermove", (event) => {
       if (!this.track.hasPointerCapture(event.pointerId)) return;
       if (this.markFrom === null) this.goTo(event);
       else timeline.setMark({ start: this.markFrom, end: this.timeAt(event) });
     });
-    this.track.addEventListener("keydown", (event) => this.key(event));
+    this.track.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.element = h(
       "section",
       { class: "timeline-bar", aria: { label: words.label } },
@@ -86,11 +86,11 @@ export class TimelineBar {
       this.live,
     );
     timeline.changed.on(() => this.show());
-    session.recording.changed.on(() => this.showAtAll());
-    timeline.moved.on(coalesced(() => this.move()));
+    session.recording.changed.on(() => this.updateVisibility());
+    timeline.moved.on(coalesced(() => this.showPosition()));
     new ResizeObserver(() => this.drawMarks()).observe(this.track);
-    this.takeKeys();
-    this.takeKeysOfScene();
+    this.bindKeys();
+    this.bindSceneKeys();
     this.show();
   }
 
@@ -98,7 +98,7 @@ export class TimelineBar {
     const { timeline, playing, speed, loop, problem } = this.timeline;
     const words = strings.timeline;
     const minutes = timeline?.live ?? false;
-    this.showAtAll();
+    this.updateVisibility();
     this.element.classList.toggle("minutes", minutes);
     this.live.hidden = !minutes;
     this.live.setAttribute("aria-pressed", String(this.timeline.live));
@@ -118,10 +118,10 @@ export class TimelineBar {
     this.problem.textContent = problem;
     this.problem.title = problem;
     this.drawMarks();
-    this.move();
+    this.showPosition();
   }
 
-  /** The topics that can be stepped by: those of a recording; of live data only the displayed topics are kept. */
+  /** Offers the topics to step by: those of the recording, or for live data those that are displayed. */
   private offerSteps(): void {
     const topics = (this.timeline.timeline?.topics ?? []).filter(({ count }) => count > 0).map(({ name }) => name);
     this.steps.hidden = topics.length < 2;
@@ -130,20 +130,20 @@ export class TimelineBar {
     this.steps.value = this.timeline.stepTopic;
   }
 
-  private showAtAll(): void {
+  private updateVisibility(): void {
     const without = this.timeline.timeline === null;
     this.element.hidden = without && !this.recording.possible;
     this.element.classList.toggle("recorder-only", without);
   }
 
-  private move(): void {
+  private showPosition(): void {
     const { timeline, position, live, extent } = this.timeline;
     if (!timeline) return;
     const { start, end } = timeline;
     const part = end > start ? Math.min(1, Math.max(0, (position - start) / (end - start))) : 1;
     this.head.style.left = `${(part * 100).toFixed(3)}%`;
-    // The age keeps growing while time is paused: it is not a name for the displayed moment.
-    const passed = extent ? (live ? extentText(extent) : momentText(position)) : passedText(position - start, end - start);
+    // The age cannot identify the displayed moment, because it keeps growing while time is paused.
+    const passed = extent ? (live ? extentText(extent) : momentText(position)) : elapsedText(position - start, end - start);
     this.time.textContent = passed;
     this.time.title = extent ? `${clockText(position)}${live ? "" : ` ${agoText(end - position)}`}\n${extentTip(extent)}` : clockText(position);
     this.showMark(start, end);
@@ -165,7 +165,7 @@ export class TimelineBar {
     this.timeline.seek(this.timeAt(event));
   }
 
-  /** The time under the pointer, s since the epoch. */
+  /** Returns the time at the pointer, s since the epoch. */
   private timeAt(event: PointerEvent): number {
     const { start, end } = this.timeline.timeline ?? { start: 0, end: 0 };
     const box = this.track.getBoundingClientRect();
@@ -174,16 +174,16 @@ export class TimelineBar {
 
   private showMark(start: number, end: number): void {
     const { mark } = this.timeline;
-    this.part.hidden = mark === null;
+    this.markedPart.hidden = mark === null;
     if (!mark || end <= start) return;
-    this.part.style.left = `${((100 * (mark.start - start)) / (end - start)).toFixed(3)}%`;
-    this.part.style.width = `${((100 * (mark.end - mark.start)) / (end - start)).toFixed(3)}%`;
+    this.markedPart.style.left = `${((100 * (mark.start - start)) / (end - start)).toFixed(3)}%`;
+    this.markedPart.style.width = `${((100 * (mark.end - mark.start)) / (end - start)).toFixed(3)}%`;
   }
 
-  private key(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     const { timeline, position } = this.timeline;
     if (!timeline || event.ctrlKey || event.metaKey || event.altKey) return;
-    const page = PAGE * (timeline.end - timeline.start);
+    const page = PAGE_SHARE * (timeline.end - timeline.start);
     const places: Record<string, number> = {
       Home: timeline.start,
       End: timeline.end,
@@ -196,8 +196,8 @@ export class TimelineBar {
     event.preventDefault();
   }
 
-  /** Space plays and pauses, the arrows step, wherever nothing else has a use for them. */
-  private takeKeys(): void {
+  /** Binds Space to play and pause, and the arrow keys to stepping, where nothing else uses them. */
+  private bindKeys(): void {
     document.addEventListener("keydown", (event) => {
       const { target } = event;
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || !this.timeline.timeline) return;
@@ -212,8 +212,8 @@ export class TimelineBar {
     });
   }
 
-  /** Steps with the arrow keys after a press into the scene of another time; after Tab they turn the camera. */
-  private takeKeysOfScene(): void {
+  /** Binds the arrow keys to stepping after a press into the scene of a past time; after Tab they rotate the camera. */
+  private bindSceneKeys(): void {
     document.addEventListener("pointerdown", () => (this.pressed = true), true);
     document.addEventListener(
       "keydown",
@@ -235,7 +235,7 @@ export class TimelineBar {
     return target === document.body || this.element.contains(target);
   }
 
-  /** Draws the density of messages, a line for each topic that has any, the more the darker. */
+  /** Draws the density of messages, in one row for each topic with messages; darker means more messages. */
   private drawMarks(): void {
     const rows = densities(this.timeline.timeline?.topics ?? []);
     const { width, height } = this.track.getBoundingClientRect();

@@ -1,14 +1,14 @@
 import { h } from "../../dom";
-import type { Described } from "../../scene/picking";
+import type { DescriptionRow } from "../../scene/picking";
 import type { SelectedItem } from "../../state/selection";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import type { TreeItem } from "../../tree/tree-item";
 import { TreeView } from "../../tree/tree-view";
-import { whenSeen } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 
-/** How often values of the selection are read again while they move. */
+/** The interval at which values of the selection are read while they change. */
 const REFRESH_MS = 250;
 
 /** RViz's Selection panel: the selection, and the properties that its display reports. */
@@ -22,7 +22,7 @@ export class SelectionPanel implements Panel {
 
   constructor(
     private readonly session: Session,
-    private readonly describe: (item: SelectedItem) => Described | null,
+    private readonly describe: (item: SelectedItem) => DescriptionRow | null,
   ) {
     this.tree = new TreeView(
       strings.selected.label,
@@ -31,12 +31,12 @@ export class SelectionPanel implements Panel {
     );
     this.element = h("div", { class: "panel" }, this.none, this.tree.element);
     session.selection.changed.on(this.tree.refresh);
-    whenSeen(this.element, this.tree.refresh);
-    session.frames.posesChanged.on(() => this.refreshSoon());
-    session.data.received.on(() => this.refreshSoon());
+    onVisibilityChange(this.element, this.tree.refresh);
+    session.frames.posesChanged.on(() => this.scheduleRefresh());
+    session.data.received.on(() => this.scheduleRefresh());
   }
 
-  private refreshSoon(): void {
+  private scheduleRefresh(): void {
     if (this.timer !== 0 || this.session.selection.items.length === 0 || this.element.offsetParent === null) return;
     this.timer = window.setTimeout(() => {
       this.timer = 0;
@@ -56,7 +56,7 @@ export class SelectionPanel implements Panel {
   }
 }
 
-function row(key: string, { name, value = "", children }: Described, expanded: boolean): TreeItem {
+function row(key: string, { name, value = "", children }: DescriptionRow, expanded: boolean): TreeItem {
   return {
     key,
     name,

@@ -7,7 +7,7 @@ import { TreeView } from "../../tree/tree-view";
 import { toolName } from "../over-scene/toolbar";
 import type { Panel } from "../panel";
 
-/** RViz's Tool Properties panel: the settings of all tools that have some. */
+/** RViz's Tool Properties panel: the settings of all tools that have any. */
 export class ToolPropertiesPanel implements Panel {
   readonly id = "tool-properties";
   readonly icon = "options";

@@ -4,7 +4,7 @@ import type { Panel } from "../panel";
 
 const TF = "rviz_default_plugins/TF";
 
-/** RViz's Transformation panel: TF is the only way there is. */
+/** RViz's Transformation panel, whose only choice is TF. */
 export class TransformationPanel implements Panel {
   readonly id = "transformation";
   readonly icon = "axes";

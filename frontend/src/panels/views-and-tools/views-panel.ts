@@ -13,7 +13,7 @@ import type { Panel } from "../panel";
 
 const CURRENT = "current";
 
-/** RViz's Views panel: the current view, and those that are kept. */
+/** RViz's Views panel: the current view and the saved ones. */
 export class ViewsPanel implements Panel {
   readonly id = "views";
   readonly icon = "camera";
@@ -39,7 +39,7 @@ export class ViewsPanel implements Panel {
     this.remove = button(words.removeHint, () => this.removeChosen(), "tool", words.remove);
     this.rename = button(words.renameHint, () => this.startRename(), "tool", words.rename);
     this.type.addEventListener("change", () => view.setClass(this.type.value));
-    this.name.addEventListener("keydown", (event) => this.named(event));
+    this.name.addEventListener("keydown", (event) => this.onNameKey(event));
     this.name.addEventListener("blur", () => {
       this.name.hidden = true;
     });
@@ -64,7 +64,7 @@ export class ViewsPanel implements Panel {
         this.name,
       ),
     );
-    tree.element.addEventListener("keydown", (event) => this.keyed(event), true);
+    tree.element.addEventListener("keydown", (event) => this.onKeyDown(event), true);
     tree.selected.on((item) => {
       const [owner] = item.key.split("|");
       this.chosen = owner === CURRENT ? null : (owner ?? null);
@@ -119,7 +119,7 @@ export class ViewsPanel implements Panel {
     ];
   }
 
-  private keyed(event: KeyboardEvent): void {
+  private onKeyDown(event: KeyboardEvent): void {
     if (!(event.target as HTMLElement).matches("[role=treeitem]") || this.chosen === null) return;
     if (event.key === "Delete") this.removeChosen();
     else if (event.key === "F2" && (event.target as HTMLElement).dataset["key"] === this.chosen) this.startRename();
@@ -141,14 +141,14 @@ export class ViewsPanel implements Panel {
     this.name.select();
   }
 
-  private named(event: KeyboardEvent): void {
+  private onNameKey(event: KeyboardEvent): void {
     if (event.key === "Enter" && this.chosen !== null) this.view.rename(this.chosen, this.name.value);
     if (event.key === "Enter" || event.key === "Escape") this.name.hidden = true;
     event.stopPropagation();
   }
 }
 
-/** The rows of a view; their keys begin with its owner's. */
+/** Returns the rows of a view; their keys begin with the key of the view. */
 function rows(
   owner: string,
   properties: readonly Property[],
@@ -172,7 +172,7 @@ function rows(
   });
 }
 
-/** `1; 2; 3` for a point. */
+/** Returns `1; 2; 3` for a point. */
 function summary(children: readonly Property[], values: ViewValues): string {
   return formatPoint(children.map(({ id, value }) => Number(values[id] ?? value)));
 }

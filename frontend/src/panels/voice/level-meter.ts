@@ -2,8 +2,8 @@ import { h } from "../../dom";
 import { meterPart } from "../../state/voice/level";
 import { strings } from "../../strings";
 
-/** Sound is cut off at this peak and above. */
-const LOUD = 0.97;
+/** Sound clips at this peak and above. */
+const CLIPPING_PEAK = 0.97;
 
 /** A meter of the microphone's level. */
 export class LevelMeter {
@@ -15,11 +15,11 @@ export class LevelMeter {
     this.show(null);
   }
 
-  /** Shows a peak of 0 to 1; null while there is no microphone. */
+  /** Shows a peak from 0 to 1; null while there is no microphone. */
   show(peak: number | null): void {
     const part = meterPart(peak ?? 0);
     this.bar.style.width = `${Math.round(100 * part)}%`;
-    this.bar.classList.toggle("clipped", (peak ?? 0) >= LOUD);
+    this.bar.classList.toggle("clipped", (peak ?? 0) >= CLIPPING_PEAK);
     this.element.setAttribute("aria-valuenow", String(Math.round(100 * part)));
     this.element.setAttribute("aria-valuetext", peak === null ? strings.voice.levelOff : `${Math.round(100 * part)} %`);
   }

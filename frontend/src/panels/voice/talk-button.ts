@@ -3,10 +3,10 @@ import { icon } from "../../icons";
 import type { VoiceState } from "../../state/voice/voice";
 import { strings } from "../../strings";
 
-/** The key that talks while it is held. */
+/** The key that opens the microphone while it is held. */
 export const TALK_KEY = "v";
 
-/** A button that talks while it is held, with the pointer, with Space or with Enter. */
+/** Returns a button that opens the microphone while it is held by pointer, Space or Enter. */
 export function talkButton(voice: VoiceState, className: string, ...words: readonly string[]): HTMLButtonElement {
   const { talk, talkHint } = strings.voice;
   const named = words.length > 0 ? {} : { label: talk };
@@ -29,7 +29,7 @@ export function talkButton(voice: VoiceState, className: string, ...words: reado
   element.addEventListener("keyup", (event) => {
     if (event.key === " " || event.key === "Enter") voice.release();
   });
-  // A finger that rests on it does not request a menu.
+  // A long press must not open the context menu.
   element.addEventListener("contextmenu", (event) => event.preventDefault());
   const show = (): void => {
     const talking = voice.held || voice.open;
@@ -42,8 +42,8 @@ export function talkButton(voice: VoiceState, className: string, ...words: reado
   return element;
 }
 
-/** The key that talks, anywhere but where text is typed; and an end to all of it when the page is left. */
-export function takeTalkKey(voice: VoiceState, takesLetters: string): void {
+/** Binds the talk key wherever no text is typed, and closes the microphone when the user leaves the page. */
+export function bindTalkKey(voice: VoiceState, takesLetters: string): void {
   document.addEventListener("keydown", (event) => {
     if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || event.shiftKey) return;
     if (event.key.toLowerCase() !== TALK_KEY) return;
@@ -55,8 +55,8 @@ export function takeTalkKey(voice: VoiceState, takesLetters: string): void {
     if (event.key.toLowerCase() === TALK_KEY) voice.release();
   });
   window.addEventListener("blur", () => voice.release());
-  window.addEventListener("pagehide", () => voice.letGo());
+  window.addEventListener("pagehide", () => voice.releaseMicrophone());
   document.addEventListener("visibilitychange", () => {
-    if (document.hidden) voice.letGo();
+    if (document.hidden) voice.releaseMicrophone();
   });
 }

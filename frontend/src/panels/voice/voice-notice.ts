@@ -7,7 +7,10 @@ import { activity, obstacle } from "./voice-words";
 
 const SHOWN_MS = 7000;
 
-/** Over the scene: that the page listens, the words that it hears, the result, or why it cannot. */
+/**
+ * The notice over the scene that shows whether the page listens, the words recognised so far, the result, or the
+ * obstacle.
+ */
 export class VoiceNotice {
   readonly element = h("div", { class: "voice-notice", role: "status" });
   private readonly text = h("span");

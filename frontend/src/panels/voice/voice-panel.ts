@@ -5,7 +5,7 @@ import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
 import { strings } from "../../strings";
 import { choice, textField, tickBox } from "../../widgets/controls";
-import { whenSeen } from "../../widgets/when-seen";
+import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { enrolHereButton, proposesEnrolling } from "./enrol-here";
 import { LevelMeter } from "./level-meter";
@@ -15,7 +15,7 @@ import { WordsBox } from "./words-box";
 
 const ICONS = { partial: "microphone", text: "microphone", command: "check", response: "speech" } as const satisfies Record<ConversationPart, string>;
 
-/** Talk to the robot, and see what it heard, understood and answered. */
+/** The panel for talking to the robot, with what it heard, understood and answered. */
 export class VoicePanel implements Panel {
   readonly id = "voice";
   readonly icon = "microphone";
@@ -63,7 +63,7 @@ export class VoicePanel implements Panel {
     voice.changed.on(() => this.show());
     enrolled.changed.on(() => this.show());
     voice.conversed.on(() => this.showHistory());
-    whenSeen(this.element, (seen) => {
+    onVisibilityChange(this.element, (seen) => {
       voice.watch(this, seen);
       box.watch(seen);
     });
@@ -71,7 +71,7 @@ export class VoicePanel implements Panel {
     this.showHistory();
   }
 
-  /** Has the user say the words where they stand. */
+  /** Starts enrolment at the user's place. */
   enrolHere(): void {
     this.box.enrolHere();
   }
@@ -81,7 +81,7 @@ export class VoicePanel implements Panel {
     const send = (): void => {
       const text = field.value.trim();
       if (text === "") return;
-      this.voice.say(text);
+      this.voice.sendCommand(text);
       field.value = "";
     };
     const field = textField(words.command, () => undefined);
@@ -96,7 +96,7 @@ export class VoicePanel implements Panel {
 
   private show(): void {
     const { voice } = this;
-    const { speaker, told, microphone } = voice;
+    const { speaker, serverState, microphone } = voice;
     const wrong = obstacle(voice);
     const text = wrong ?? activity(voice);
     if (this.state.textContent !== text) this.state.textContent = text;
@@ -104,7 +104,7 @@ export class VoicePanel implements Panel {
     this.meter.show(microphone.isOpen ? microphone.peak : null);
     this.open.box.checked = voice.open;
     this.proposal.hidden = !proposesEnrolling(voice, this.enrolled);
-    this.textNote.hidden = told?.text_listeners !== 0;
+    this.textNote.hidden = serverState?.text_listeners !== 0;
     this.speak.box.checked = speaker.settings.on;
     this.showVoices();
   }

@@ -1,22 +1,22 @@
 import type { VoiceState } from "../../state/voice/voice";
 import { strings } from "../../strings";
 
-/** The obstacle to talking, and what to do about it; null when there is none. */
+/** Returns the obstacle to talking and its remedy; null if there is none. */
 export function obstacle(voice: VoiceState): string | null {
   const words = strings.voice;
-  const { microphone, told, held, open } = voice;
+  const { microphone, serverState, held, open } = voice;
   if (microphone.problem === "insecure") return words.insecure(location.hostname, location.port || "80");
   if (microphone.problem === "failed") return words.failed(microphone.detail);
   if (microphone.problem !== null) return words.problems[microphone.problem];
-  if (told?.cut === true) return words.cut;
+  if (serverState?.cut === true) return words.cut;
   if (voice.hasGaps && !voice.answered) return words.gaps;
   if (!held && !open) return null;
-  if (told?.talking === "another") return words.another;
-  if (told?.sound_listeners === 0) return words.nobody;
+  if (serverState?.talking === "another") return words.another;
+  if (serverState?.sound_listeners === 0) return words.nobody;
   return null;
 }
 
-/** The state of the microphone, in words. */
+/** Returns the state of the microphone in words. */
 export function activity(voice: VoiceState): string {
   const words = strings.voice;
   if (voice.microphone.isOpening) return words.opening;

@@ -9,10 +9,10 @@ import { askName } from "../../widgets/dialog";
 import { saveText } from "../../widgets/save-file";
 import { obstacle } from "./voice-words";
 
-/** Below this the loudest sample of a recording is rather quiet: -24 dB. */
+/** A recording whose peak is below this counts as quiet: -24 dB. */
 const QUIET = 0.06;
 
-/** The words that the user enrols: each is said three times, with a button that is held. */
+/** The words that the user enrols: each is spoken three times, with a button held down. */
 export class WordsBox {
   readonly element: HTMLDetailsElement;
   private readonly list = h("div", { class: "word-list", role: "list" });
@@ -22,8 +22,8 @@ export class WordsBox {
   private readonly here: HTMLElement;
   private readonly hereNote = h("span", { class: "note" });
   private readonly hereDone = h("strong", { role: "status" });
-  private shown = "";
-  /** What is to be said next takes the focus as soon as the words are known. */
+  private shownNames = "";
+  /** Whether the next word to speak takes the focus once the words are known. */
   private focusDue = false;
 
   constructor(
@@ -32,12 +32,12 @@ export class WordsBox {
   ) {
     const texts = strings.voice.words;
     const add = (): void => {
-      words.name(field.value);
+      words.addWord(field.value);
       field.value = "";
     };
     const field = (this.field = textField(texts.choose, () => undefined));
     field.maxLength = 100;
-    const suggestions = h("datalist", {}, ...texts.suggestions.map((each) => new Option(each)));
+    const suggestions = h("datalist", {}, ...texts.suggestions.map((suggestion) => new Option(suggestion)));
     suggestions.id = "voice-word-suggestions";
     field.setAttribute("list", suggestions.id);
     field.addEventListener("keydown", (event) => {
@@ -67,7 +67,7 @@ export class WordsBox {
         "div",
         { class: "voice-row" },
         button(texts.importHint, () => picker.click(), "tool framed", icon("upload"), texts.importFile),
-        button(texts.exportHint, () => words.askFile(), "tool framed", icon("download"), texts.exportFile),
+        button(texts.exportHint, () => words.requestFile(), "tool framed", icon("download"), texts.exportFile),
         picker,
       ),
       this.file,
@@ -75,16 +75,16 @@ export class WordsBox {
     this.element.addEventListener("toggle", () => this.watch(true));
     words.changed.on(() => this.show());
     voice.changed.on(() => this.showProblem());
-    words.fileCame.on((text) => saveText("words.json", text, "application/json"));
+    words.fileArrived.on((text) => saveText("words.json", text, "application/json"));
     this.show();
   }
 
-  /** Whether the panel can be seen. */
+  /** Requests the words while the panel is visible and this box is open. */
   watch(seen: boolean): void {
     this.words.watch(seen && this.element.open);
   }
 
-  /** Has the user say the words where they stand. The panel must be in front. */
+  /** Starts enrolment at the user's place. The panel must be in front. */
   enrolHere(): void {
     this.element.open = true;
     this.focusDue = true;
@@ -96,9 +96,9 @@ export class WordsBox {
     const { words } = this;
     const all = words.all;
     const key = JSON.stringify(all.map(({ name }) => name));
-    // While a button is held it must stay where it is.
-    if (key !== this.shown) {
-      this.shown = key;
+    // Replace the rows only if words changed: a button that is held must stay in place.
+    if (key !== this.shownNames) {
+      this.shownNames = key;
       this.list.replaceChildren(...all.map((word) => this.row(word)));
     }
     all.forEach((word, index) => this.update(this.list.children[index], word));
@@ -114,13 +114,13 @@ export class WordsBox {
   }
 
   private showHere(): void {
-    const { all, here, missingHere, enough, file } = this.words;
+    const { all, takesHere, missingHere, enough, file } = this.words;
     const texts = strings.voice.words;
-    this.here.hidden = here === null;
-    if (here === null) return;
+    this.here.hidden = takesHere === null;
+    if (takesHere === null) return;
     const [next] = missingHere;
-    const said = all.length - missingHere.length;
-    const progress = all.length === 0 ? texts.hereNone : next ? texts.hereDone(said, all.length) : texts.hereAll;
+    const doneCount = all.length - missingHere.length;
+    const progress = all.length === 0 ? texts.hereNone : next ? texts.hereDone(doneCount, all.length) : texts.hereAll;
     if (this.hereDone.textContent !== progress) this.hereDone.textContent = progress;
     this.hereNote.textContent = texts.here(enough);
     if (!this.focusDue || file === "") return;
@@ -133,9 +133,9 @@ export class WordsBox {
     const texts = strings.voice.words;
     const { words } = this;
     const say = button(texts.say(name), () => undefined, "tool framed word-say", icon("microphone"));
-    const begin = (): void => void words.begin(name);
+    const begin = (): void => void words.startTake(name);
     const end = (): void => {
-      if (words.recording === name) words.end();
+      if (words.recording === name) words.endTake();
     };
     say.addEventListener("pointerdown", (event) => {
       if (event.button !== 0) return;
@@ -158,11 +158,11 @@ export class WordsBox {
   }
 
   private update(row: Element | undefined, { name, takes }: EnrolledWord): void {
-    const { recording, isHearing, enough, judged, here } = this.words;
+    const { recording, isHearing, enough, judged, takesHere } = this.words;
     const texts = strings.voice.words;
     const find = (part: string): Element | null => row?.querySelector(part) ?? null;
     const count = find(".word-takes");
-    const counted = here === null ? takes : Math.min(here.get(name) ?? 0, enough);
+    const counted = takesHere === null ? takes : Math.min(takesHere.get(name) ?? 0, enough);
     if (count) count.textContent = texts.takes(counted, enough);
     row?.classList.toggle("enough", counted >= enough);
     find(".word-say")?.classList.toggle("talking", recording === name && isHearing);
@@ -175,7 +175,7 @@ export class WordsBox {
   }
 }
 
-/** The outcome of a take, in words. */
+/** Returns the verdict on a take in words. */
 function judgement({ code, text, peak, seconds }: TakeJudged): string {
   const texts = strings.voice.words;
   const known: Readonly<Record<string, string>> = texts.codes;

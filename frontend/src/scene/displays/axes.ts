@@ -33,7 +33,7 @@ export class AxesDrawing implements Drawing {
     this.root.matrixWorldNeedsUpdate = true;
   }
 
-  /** Bounds in the fixed frame, null without a transform. */
+  /** Returns the bounds in the fixed frame; null without a transform. */
   inspect(): object {
     if (!this.mesh.visible) return { bounds: null };
     this.mesh.updateWorldMatrix(true, false);

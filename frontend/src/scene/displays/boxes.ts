@@ -7,12 +7,12 @@ import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 import { colorOf, poseAt } from "./styles";
 
-/** x y z of both ends of each of the twelve edges of a cube of one metre. */
+/** The x y z of both ends of the twelve edges of a unit cube. */
 const EDGES = new EdgesGeometry(new BoxGeometry(1, 1, 1)).getAttribute("position").array as Float32Array;
-/** Height of a line of text, m: a third of the box, in these bounds. */
-const TEXT = [0.05, 0.5] as const;
+/** The minimum and maximum height of a line of text, m; between them it is a third of the box. */
+const TEXT_HEIGHTS = [0.05, 0.5] as const;
 
-/** The displays of vision_msgs_rviz_plugins: boxes, or only their edges, with the colours of their classes. */
+/** The displays of vision_msgs_rviz_plugins: boxes or their edges only, in the colours of their classes. */
 export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
   private readonly boxes = new CopyBatch(this.root, cubeGeometry());
   private readonly edges = new WideLines();
@@ -30,7 +30,7 @@ export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
     this.labels.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { boxes: this.latest?.sizes.length ? this.latest.sizes.length / 3 : 0, solid: this.boxes.size, texts: [...this.texts] };
   }
 
@@ -43,7 +43,7 @@ export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
     const { rows } = this.context.display;
     const onlyEdges = rows.bool(false, "Only Edge");
     const alpha = rows.number(1, "Alpha");
-    // Boxes without classes are white, for the one colour of the display.
+    // Boxes without classes arrive in white and get the display's colour.
     const own = rows.text("", "Color") === "" ? null : colorOf(rows, "#ffff00", "Color");
     const [placed] = this.placed();
     const content = placed?.content;
@@ -68,7 +68,7 @@ export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
       } else this.boxes.add(matrix, 0, alpha, color);
       const score = content.scores[i] ?? -1;
       if (score < 0 || !rows.bool(false, "Show Score")) continue;
-      const height = Math.min(TEXT[1], Math.max(TEXT[0], size.z / 3));
+      const height = Math.min(TEXT_HEIGHTS[1], Math.max(TEXT_HEIGHTS[0], size.z / 3));
       this.texts.push(`${content.names[i] ?? ""} ${score.toFixed(2)}`.trim());
       anchors.push({ at: middle.setZ(middle.z + 0.6 * size.z + height), height });
     }

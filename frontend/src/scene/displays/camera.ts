@@ -6,11 +6,11 @@ import { cameraInImageFrame, imageZoom, projection } from "../images/camera-proj
 import { OwnPanel } from "../images/own-panel";
 import { ImageCanvas } from "../images/image-canvas";
 import { SceneImage } from "../images/scene-image";
-import { seenThrough } from "../images/seen-through";
+import { isShownInCamera } from "../images/shown-in-camera";
 import { dataPose } from "../pose";
 import type { Drawing, DrawingContext, DrawnScene } from "./drawing";
 
-/** rviz_default_plugins/Camera: the scene as a camera sees it and the camera's image, in a panel of its own. */
+/** rviz_default_plugins/Camera: a panel with the scene as a camera sees it, combined with the camera's image. */
 export class CameraDrawing implements Drawing {
   readonly root = new Group();
   private readonly image = new ImageCanvas();
@@ -21,20 +21,20 @@ export class CameraDrawing implements Drawing {
   private data: DisplayData | null = null;
   private model: CameraModel | null = null;
   private nextAt = 0;
-  private later = 0;
+  private retryTimer = 0;
   private readonly resizing: ResizeObserver;
 
   constructor(private readonly context: DrawingContext) {
     this.camera.matrixAutoUpdate = false;
     this.panel = new OwnPanel(context, "camera", this.canvas);
-    this.panel.say(strings.images.none);
-    this.panel.match();
+    this.panel.showText(strings.images.none);
+    this.panel.update();
     this.resizing = new ResizeObserver(() => this.context.invalidate());
     this.resizing.observe(this.panel.element);
   }
 
   propertiesChanged(): void {
-    this.panel.match();
+    this.panel.update();
   }
 
   dataChanged(data: DisplayData): void {
@@ -42,9 +42,9 @@ export class CameraDrawing implements Drawing {
     if (content.kind !== "image_frame") return;
     this.data = data;
     this.model = content.camera;
-    this.image.take(content, (shown) => {
-      if (!shown) this.panel.say(strings.images.unreadable);
-      else this.panel.say(this.model ? "" : strings.images.noCameraInfo);
+    this.image.show(content, (shown) => {
+      if (!shown) this.panel.showText(strings.images.unreadable);
+      else this.panel.showText(this.model ? "" : strings.images.noCameraInfo);
       this.context.invalidate();
     });
   }
@@ -53,17 +53,17 @@ export class CameraDrawing implements Drawing {
     this.data = this.model = null;
     this.image.clear();
     this.canvas.width = this.canvas.height = 0;
-    this.panel.say(strings.images.none);
+    this.panel.showText(strings.images.none);
   }
 
   update(): void {
-    // It has no place in the scene; `drawn` draws it.
+    // The display draws nothing into the scene; `afterFrame` draws the panel.
   }
 
-  drawn(scene: DrawnScene): void {
+  afterFrame(scene: DrawnScene): void {
     const { data, model } = this;
     const { element } = this.panel;
-    if (!data || !model || !this.panel.isSeen || !this.isTurn()) return;
+    if (!data || !model || !this.panel.isVisible || !this.isDue()) return;
     const started = performance.now();
     if (!dataPose(this.context.session.frames, data, this.camera.matrix)) return;
     const { rows } = this.context.display;
@@ -73,8 +73,8 @@ export class CameraDrawing implements Drawing {
     this.camera.matrixWorldNeedsUpdate = true;
     this.camera.projectionMatrix.copy(projection(model, zoom, rows.number(100, "Far Plane Distance")));
     this.camera.projectionMatrixInverse.copy(this.camera.projectionMatrix).invert();
-    scene.showing(
-      (display) => seenThrough(rows, display),
+    scene.withOnly(
+      (display) => isShownInCamera(rows, display),
       () => this.scene.draw(scene.renderer, scene.scene, this.camera, width, height),
     );
     this.compose(scene, zoom, width, height);
@@ -98,21 +98,24 @@ export class CameraDrawing implements Drawing {
 
   dispose(): void {
     this.resizing.disconnect();
-    clearTimeout(this.later);
+    clearTimeout(this.retryTimer);
     this.panel.close();
     this.scene.dispose();
   }
 
-  /** Drawing the scene twice takes its time: at most half of it, and an omitted image is drawn later. */
-  private isTurn(): boolean {
+  /**
+   * Returns whether to draw now. Drawing the scene a second time may take at most half of the time; a skipped image is
+   * drawn later.
+   */
+  private isDue(): boolean {
     const wait = this.nextAt - performance.now();
     if (wait <= 0) return true;
-    clearTimeout(this.later);
-    this.later = window.setTimeout(this.context.invalidate, wait);
+    clearTimeout(this.retryTimer);
+    this.retryTimer = window.setTimeout(this.context.invalidate, wait);
     return false;
   }
 
-  /** Image, scene, image. */
+  /** Draws the background image, the scene, and the overlay image. */
   private compose(scene: DrawnScene, zoom: readonly [number, number], width: number, height: number): void {
     const { rows } = this.context.display;
     const where = rows.text("background and overlay", "Image Rendering");

@@ -1,17 +1,20 @@
 import type { PointFields } from "../../protocol";
-import type { Described } from "../picking";
+import type { DescriptionRow } from "../picking";
 
 const DIGITS = 6;
 
-/** The rows of RViz's Selection panel for a point: its position in the message's frame, then its other fields, numbered. */
-export function described(
+/**
+ * Returns the rows of RViz's Selection panel for a point: its position in the message's frame, then its other fields,
+ * numbered.
+ */
+export function describePoint(
   index: number,
   cloud: string,
   position: Float32Array,
   fields: PointFields["fields"] | null,
-): Described {
+): DescriptionRow {
   const coordinates = [...position].map((each) => String(Number(each.toPrecision(DIGITS))));
-  const children: Described[] = [
+  const children: DescriptionRow[] = [
     {
       name: "Position",
       value: coordinates.join("; "),

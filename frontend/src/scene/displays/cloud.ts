@@ -4,31 +4,31 @@ import { nearestPoint } from "../objects/nearest-point";
 import { PointBatch } from "../objects/point-batch";
 import type { PointLook, PointStyle } from "../objects/point-material";
 import { WireBoxes } from "../objects/wire-boxes";
-import type { Described, Hit, SelectionBox } from "../picking";
+import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import { dataPose } from "../pose";
-import { described } from "./cloud-description";
+import { describePoint } from "./cloud-description";
 import type { Drawing, DrawingContext } from "./drawing";
 import { PointFieldStore } from "./point-fields";
 
-/** What a pointer covers around it, as a part of half the scene's height: some 4 pixels of a scene of usual size. */
-const POINTER = 0.012;
-/** Of a rectangle that holds more points than these only so many are selected. */
-const MOST_SELECTED = 1000;
-/** Side of the mark of a selected point of the style Points, m. */
-const SMALLEST_MARK = 0.004;
+/** The radius around the pointer that picks points, as a share of half the scene's height: about 4 pixels. */
+const POINTER_RADIUS = 0.012;
+/** The maximum number of points that a rectangle selects. */
+const MAX_SELECTED = 1000;
+/** The side of the mark around a selected point of the style Points, m. */
+const POINT_MARK = 0.004;
 
 /** The points of one message. */
 interface Cloud {
   data: DisplayData;
   batch: PointBatch;
   perDepth: number;
-  /** One of so many points was sent; 1 for all of them. */
+  /** Every `step`-th point was sent; 1 if all were. */
   step: number;
 }
 
 /**
  * rviz_default_plugins/PointCloud2, LaserScan, DepthCloud, FluidPressure, Illuminance, RelativeHumidity, Temperature.
- * Messages that are still shown because of the Decay Time are batches of their own.
+ * Each message that Decay Time keeps visible has a batch of its own.
  */
 export class CloudDrawing implements Drawing {
   readonly root = new Group();
@@ -89,9 +89,10 @@ export class CloudDrawing implements Drawing {
   pick(ray: Raycaster): Hit | null {
     const [origin, direction] = [new Vector3(), new Vector3()];
     const inverse = new Matrix4();
-    // Half the height of the visible area, m: a metre away, or anywhere where the view is parallel.
+    // Half the height of the visible area, m: at a distance of one metre, or at any distance for an orthographic
+    // camera.
     const { elements } = this.context.camera().projectionMatrix;
-    const pointer = POINTER / elements[5];
+    const pointer = POINTER_RADIUS / elements[5];
     const parallel = elements[15] === 1;
     let best: Hit | null = null;
     for (const [key, cloud] of this.clouds) {
@@ -115,7 +116,7 @@ export class CloudDrawing implements Drawing {
     if (!this.context.display.rows.bool(true, "Selectable")) return found;
     const at = new Vector3();
     for (const [key, { batch }] of this.clouds) {
-      for (let i = 0; i < batch.count && found.length < MOST_SELECTED; i++) {
+      for (let i = 0; i < batch.count && found.length < MAX_SELECTED; i++) {
         at.fromArray(batch.positions, i * 3).applyMatrix4(batch.root.matrix);
         if (box.hasPoint(at.x, at.y, at.z)) found.push(`${key}:${i}`);
       }
@@ -123,14 +124,14 @@ export class CloudDrawing implements Drawing {
     return found;
   }
 
-  describe(key: string): Described | null {
+  describe(key: string): DescriptionRow | null {
     const found = this.find(key);
     if (!found) return null;
     const { cloud, cloudKey, index } = found;
     const position = cloud.batch.positions.subarray(index * 3, index * 3 + 3);
-    // Of a cloud thinned for a slow line the server counts all points.
+    // The server numbers the points of the full cloud, also when the cloud is thinned for a slow connection.
     const number = index * cloud.step;
-    return described(number, cloudKey, position, this.fields.of(cloudKey, number));
+    return describePoint(number, cloudKey, position, this.fields.of(cloudKey, number));
   }
 
   placeOf(key: string): Vector3 | null {
@@ -186,26 +187,26 @@ export class CloudDrawing implements Drawing {
     return cloud && index < cloud.batch.count ? { cloud, cloudKey, index } : null;
   }
 
-  /** Boxes around the selected points. */
+  /** Draws boxes around the selected points. */
   private mark(): void {
     const middles = [...this.selected].flatMap((key) => this.placeOf(key)?.toArray() ?? []);
     const { style, size } = this.look({ perDepth: 0 });
-    this.marks.set(middles, style === "Points" ? SMALLEST_MARK : size[0]);
+    this.marks.set(middles, style === "Points" ? POINT_MARK : size[0]);
     this.context.invalidate();
   }
 }
 
-/** Least and largest corner of all points in the fixed frame, m; null without any. */
+/** Returns the minimum and maximum corner of all points in the fixed frame, m; null if there are none. */
 function bounds(clouds: readonly Cloud[]): [number[], number[]] | null {
-  const least = new Vector3(Infinity, Infinity, Infinity);
-  const largest = least.clone().negate();
+  const minimum = new Vector3(Infinity, Infinity, Infinity);
+  const maximum = minimum.clone().negate();
   const at = new Vector3();
   for (const { batch } of clouds) {
     for (let i = 0; i < batch.count; i++) {
       at.fromArray(batch.positions, i * 3).applyMatrix4(batch.root.matrix);
-      least.min(at);
-      largest.max(at);
+      minimum.min(at);
+      maximum.max(at);
     }
   }
-  return least.x === Infinity ? null : [least.toArray(), largest.toArray()];
+  return minimum.x === Infinity ? null : [minimum.toArray(), maximum.toArray()];
 }

@@ -7,7 +7,7 @@ import type { Drawing, DrawingContext } from "./drawing";
 type Kind = DataContent["kind"];
 type ContentOf<K extends Kind> = Extract<DataContent, { kind: K }>;
 
-/** A content with its key, its frame and where that is in the fixed frame. */
+/** A content with its key, its frame, and the pose of the frame in the fixed frame. */
 export interface Placed<C> {
   key: string;
   frame: string;
@@ -16,8 +16,8 @@ export interface Placed<C> {
 }
 
 /**
- * The base of displays that draw contents of one kind, each in its frame. A subclass makes its objects in `arrange`,
- * which comes before a frame in which a content, a property or the place of a content is another.
+ * The base class of displays that draw contents of one kind, each in its frame. A subclass updates its objects in
+ * `arrange`, which is called before a frame if a content, a property or a pose has changed.
  */
 export abstract class ContentDrawing<K extends Kind> implements Drawing {
   readonly root = new Group();
@@ -31,7 +31,7 @@ export abstract class ContentDrawing<K extends Kind> implements Drawing {
 
   dataChanged(data: DisplayData): void {
     if (data.content.kind !== this.kind) return;
-    // The newest comes last.
+    // Insert again so that the newest content is the last.
     this.contents.delete(data.key);
     this.contents.set(data.key, data);
     this.stale = true;
@@ -54,20 +54,20 @@ export abstract class ContentDrawing<K extends Kind> implements Drawing {
     this.arrange();
   }
 
-  /** The counts and bounds of everything drawn; bounds are in the fixed frame, null of nothing. */
+  /** Returns the counts and bounds of what is drawn; bounds are in the fixed frame, null if nothing is drawn. */
   inspect(): object {
     const box = new Box3();
     this.expandBox(box);
     const bounds = box.isEmpty() ? null : { min: box.min.toArray(), max: box.max.toArray() };
-    return { contents: this.contents.size, bounds, ...this.told() };
+    return { contents: this.contents.size, bounds, ...this.drawnState() };
   }
 
   abstract dispose(): void;
   protected abstract arrange(): void;
   protected abstract expandBox(box: Box3): void;
 
-  /** Further results of `inspect`. */
-  protected told(): object {
+  /** Returns further results for `inspect`. */
+  protected drawnState(): object {
     return {};
   }
 
@@ -77,7 +77,7 @@ export abstract class ContentDrawing<K extends Kind> implements Drawing {
     return last ? (last.content as ContentOf<K>) : null;
   }
 
-  /** The contents whose frame has a place, with it; the matrix is another one each time. */
+  /** Returns the contents whose frame has a pose, with new matrices. */
   protected placed(): Placed<ContentOf<K>>[] {
     const result: Placed<ContentOf<K>>[] = [];
     for (const data of this.contents.values()) {

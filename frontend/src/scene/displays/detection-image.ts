@@ -3,18 +3,18 @@ import type { ImageBoxes } from "../../protocol";
 import type { DrawingContext } from "./drawing";
 import { ImageDrawing } from "./image";
 
-/** Pixels of the page: lines and texts are as large whatever the size of image and panel. */
-const LINE = 2;
-const TEXT = 16;
-const MOST_KEPT = 10;
+/** CSS pixels: lines and texts have the same size whatever the size of the image and the panel. */
+const LINE_PX = 2;
+const TEXT_PX = 16;
+const MAX_PENDING = 10;
 
 /** linkwright/Detections: an image with boxes over it. */
 export class DetectionImageDrawing extends ImageDrawing {
   private readonly overlay = document.createElement("canvas");
-  /** The boxes of images that are yet to be painted, or are, by their stamps. */
-  private readonly found = new Map<number, ImageBoxes>();
-  /** Boxes of an image that is not there any more. */
-  private loose: ImageBoxes | null = null;
+  /** The boxes of images that are shown or not painted yet, by their stamps. */
+  private readonly boxesByStamp = new Map<number, ImageBoxes>();
+  /** The boxes of an image that is no longer available. */
+  private unmatchedBoxes: ImageBoxes | null = null;
   private shown: string[] = [];
 
   constructor(context: DrawingContext) {
@@ -32,16 +32,16 @@ export class DetectionImageDrawing extends ImageDrawing {
   override dataChanged(data: DisplayData): void {
     const { content, stamp } = data;
     if (content.kind === "image_boxes") {
-      this.loose = content.of_image ? null : content;
-      if (content.of_image) this.found.set(stamp, content);
-      for (const old of [...this.found.keys()].slice(0, -MOST_KEPT)) this.found.delete(old);
-      if (this.loose) this.draw();
+      this.unmatchedBoxes = content.of_image ? null : content;
+      if (content.of_image) this.boxesByStamp.set(stamp, content);
+      for (const old of [...this.boxesByStamp.keys()].slice(0, -MAX_PENDING)) this.boxesByStamp.delete(old);
+      if (this.unmatchedBoxes) this.draw();
     } else super.dataChanged(data);
   }
 
   override dataForgotten(key: string | null): void {
-    this.found.clear();
-    this.loose = null;
+    this.boxesByStamp.clear();
+    this.unmatchedBoxes = null;
     if (key === "boxes") this.draw();
     else super.dataForgotten(key);
   }
@@ -50,14 +50,14 @@ export class DetectionImageDrawing extends ImageDrawing {
     return { ...super.inspect(), boxes: [...this.shown] };
   }
 
-  /** The image is on the canvas. */
-  protected override painted(): void {
+  /** Called when a new image is on the canvas. */
+  protected override onPainted(): void {
     this.draw();
   }
 
   private draw(): void {
     const { overlay } = this;
-    const boxes = this.found.get(this.imageStamp) ?? this.loose;
+    const boxes = this.boxesByStamp.get(this.imageStamp) ?? this.unmatchedBoxes;
     const { width, height } = this.size;
     const context = overlay.getContext("2d");
     if (!context || width === 0) return;
@@ -84,7 +84,7 @@ export class DetectionImageDrawing extends ImageDrawing {
   }
 }
 
-/** One box, with its text above its upper left corner, or below it where there is no room. */
+/** Draws a box, with its text above the upper left corner, or inside the box if there is no room above. */
 function drawBox(context: CanvasRenderingContext2D, { boxes, colors }: ImageBoxes, i: number, scale: number, text: string): void {
   const [x = 0, y = 0, width = 0, height = 0, turn = 0] = boxes.subarray(5 * i, 5 * i + 5);
   const [red = 0, green = 0, blue = 0] = colors.subarray(3 * i, 3 * i + 3);
@@ -93,15 +93,15 @@ function drawBox(context: CanvasRenderingContext2D, { boxes, colors }: ImageBoxe
   context.translate(x, y);
   context.rotate(turn);
   context.strokeStyle = color;
-  context.lineWidth = LINE / scale;
+  context.lineWidth = LINE_PX / scale;
   context.strokeRect(-width / 2, -height / 2, width, height);
   if (text !== "") {
-    const line = TEXT / scale;
+    const line = TEXT_PX / scale;
     context.font = `${0.75 * line}px sans-serif`;
     const top = y - height / 2 < line ? -height / 2 : -height / 2 - line;
     context.fillStyle = color;
     context.fillRect(-width / 2, top, context.measureText(text).width + line / 2, line);
-    // Dark on light colours, light on dark ones.
+    // Choose the text colour for contrast: dark on light colours, light on dark ones.
     context.fillStyle = 0.3 * red + 0.59 * green + 0.11 * blue > 110 ? "#101010" : "#ffffff";
     context.textBaseline = "middle";
     context.fillText(text, -width / 2 + line / 4, top + line / 2);

@@ -1,19 +1,19 @@
 import type { IconName } from "../../icons";
 
-/** A panel of a display: it comes and goes with the display. */
+/** A display's own panel, which exists while the display is enabled. */
 export interface DisplayPanel {
-  /** `display:` and the display's id. */
+  /** `display:` followed by the display's ID. */
   readonly key: string;
   readonly title: string;
   readonly icon: IconName;
   readonly element: HTMLElement;
-  /** Whether it is in place of the scene, in which nothing is to be seen: of a recording with images and nothing else. */
-  readonly instead: boolean;
-  /** The user closes it. */
+  /** Whether the panel replaces the scene, because a recording with images only has nothing to show in it. */
+  readonly replacesScene: boolean;
+  /** Called when the user closes the panel. */
   closed(): void;
 }
 
-/** The host of displays' own panels. */
+/** The host of the panels of displays. */
 export interface PanelHost {
   offer(panel: DisplayPanel): void;
   withdraw(key: string): void;

@@ -5,75 +5,80 @@ import type { Session } from "../../state/session";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import type { MovingView } from "../robot/moving-meshes";
 import type { PanelHost } from "./display-panel";
-import type { Described, Hit, Interaction, ScenePointer, SelectionBox } from "../picking";
+import type { DescriptionRow, Hit, Interaction, ScenePointer, SelectionBox } from "../picking";
 
-/** The objects that a drawing works with. */
+/** The objects that a drawing uses. */
 export interface DrawingContext {
   readonly display: DisplayState;
   readonly session: Session;
   readonly meshes: MeshLibrary;
-  /** Takes panels of the display's own. */
+  /** The host for the display's own panels. */
   readonly panels: PanelHost;
-  /** Asks for a frame. */
+  /** Requests a frame. */
   readonly invalidate: () => void;
-  /** Has something shown beside the scene together with the next frame, see `FrameLoop.beside`. */
-  readonly beside: (show: () => void) => void;
-  /** The camera of the 3-D view, as it is now. */
+  /** Shows something outside the scene in step with the next frame, see `FrameLoop.schedule`. */
+  readonly showWithFrame: (show: () => void) => void;
+  /** Returns the current camera of the 3-D view. */
   readonly camera: () => Camera;
-  /** Whether a light with shadows does not make the page slow. */
+  /** Whether a light with shadows would not make the page slow. */
   readonly affordsStudio: () => boolean;
 }
 
-/** The scene as it was just drawn, for displays that draw it once more. */
+/** The scene just drawn, for displays that draw it a second time. */
 export interface DrawnScene {
   readonly renderer: WebGLRenderer;
   readonly scene: Scene;
-  /** The colour behind the scene. */
+  /** The background colour of the scene. */
   readonly background: string;
-  /** Runs `draw` with only those displays to be seen that are accepted. */
-  showing(accepts: (display: DisplayState) => boolean, draw: () => void): void;
+  /** Runs `draw` while only the accepted displays are visible. */
+  withOnly(accepts: (display: DisplayState) => boolean, draw: () => void): void;
 }
 
-/** The drawing of a display. The stage shows and hides `root` with the display's enable box. */
+/** The drawing of a display. The stage shows `root` while the display is enabled. */
 export interface Drawing {
   readonly root: Object3D;
-  /** It has no place in the scene, so that its content asks for no frame. */
+  /** Whether the display draws nothing into the scene, so that its content requires no frame. */
   readonly isElsewhere?: boolean;
-  /** A value or the rows of the display changed; read the relevant values from `display.rows` again. */
+  /**
+   * Called when a value or the rows of the display changed; the drawing reads what it needs from `display.rows` again.
+   */
   propertiesChanged(): void;
-  /** Called before every frame drawn while the display is enabled: put everything where it is now. */
+  /** Called before every frame while the display is enabled, to update the poses of its objects. */
   update(): void;
-  /** Called before a frame of a moving scene that is drawn coarsely: draw less where no user sees it; null after it: all again. */
-  move?(view: MovingView | null): void;
-  /** New content; a drawing made later receives the earlier content, too. */
+  /**
+   * Called before a coarse frame of a moving scene, to omit what is not noticed; with null after the motion, to draw
+   * everything again.
+   */
+  simplify?(view: MovingView | null): void;
+  /** Called with new content; a drawing created later receives earlier content, too. */
   dataChanged?(data: DisplayData): void;
-  /** The content under a key, or all of it (null), is to be drawn no more. */
+  /** Called when the content under a key, or all content (null), must no longer be drawn. */
   dataForgotten?(key: string | null): void;
-  /** Called after every frame while the display is enabled: draw what shows the scene elsewhere. */
-  drawn?(scene: DrawnScene): void;
-  /** False while something that was asked for is still being loaded. */
+  /** Called after every frame while the display is enabled, for displays that show the scene elsewhere. */
+  afterFrame?(scene: DrawnScene): void;
+  /** Returns false while requested data is still loading. */
   settled?(): boolean;
-  /** The nearest thing under the ray. */
+  /** Returns the nearest object that a ray hits. */
   pick?(ray: Raycaster): Hit | null;
-  /** The keys of the things within a box on the screen. */
+  /** Returns the keys of the objects within a rectangle on the screen. */
   pickBox?(box: SelectionBox): readonly string[];
-  /** What the Selection panel shows of a thing as it is now; null when it is there no more. */
-  describe?(key: string): Described | null;
-  /** The objects that draw a thing, for outlining and focusing. */
+  /** Returns what the Selection panel shows of an object now; null if the object no longer exists. */
+  describe?(key: string): DescriptionRow | null;
+  /** Returns the three.js objects that draw an object, for outlining and focusing. */
   objectsOf?(key: string): readonly Object3D[];
-  /** Where a thing is, in the fixed frame, for those that no object draws. */
+  /** Returns the position of an object in the fixed frame, for objects without three.js objects of their own. */
   placeOf?(key: string): Vector3 | null;
-  /** The things selected now, for things that are not objects of their own and show it themselves. */
+  /** Called with the keys of the selected objects, for drawings that mark the selection themselves. */
   highlight?(keys: ReadonlySet<string>): void;
-  /** The Interact tool's events while the pointer is over what `pick` gives; true takes it: the camera stays still. */
+  /** Handles the Interact tool's events over an object that `pick` returned; returns true to keep the camera still. */
   pointer?(event: ScenePointer): boolean;
-  /** The Interact tool is taken in hand or put away, or something is being held with it. */
+  /** Called when the Interact tool is activated or deactivated, or an object is held with it. */
   interactionChanged?(interaction: Interaction): void;
-  /** What is drawn, for tests: counts, bounds, colours. */
+  /** Returns what is drawn, for tests: counts, bounds, colours. */
   inspect?(): object;
   dispose(): void;
 }
 
-/** The constructor of a drawing: one class for each RViz display class, listed in `registry.ts`. */
+/** The constructor of a drawing; `registry.ts` lists one for each RViz display class. */
 export type DrawingClass = new (context: DrawingContext) => Drawing;
 

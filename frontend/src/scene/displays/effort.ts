@@ -5,13 +5,13 @@ import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 import { poseAt } from "./styles";
 
-/** Radius of a ring without effort, m, and part of the limit that every ring shows beyond its effort. */
-const LEAST = 0.05;
-/** A ring is this many parts of 32; where it is open stands its arrow head. */
+/** The radius of a ring without effort, m, which is also added to the used share of the limit. */
+const MIN_RADIUS = 0.05;
+/** The points of a ring, which spans this many of 32 parts; the gap holds its arrow head. */
 const POINTS = 30;
 const PARTS = 32;
 
-/** rviz_default_plugins/Effort: rings about the joints, larger and redder the nearer they are to their limit. */
+/** rviz_default_plugins/Effort: rings around the joints, larger and redder the closer the effort is to its limit. */
 export class EffortDrawing extends ContentDrawing<"effort_rings"> {
   private readonly rings = new WideLines();
   private readonly heads = new ArrowBatch(this.root);
@@ -26,7 +26,7 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
     this.heads.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { rings: this.heads.size, joints: this.latest?.joints ?? [], efforts: [...(this.latest?.efforts ?? [])] };
   }
 
@@ -48,8 +48,8 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
       content.joints.forEach((joint, i) => {
         if (!rows.bool(true, "Joints", joint)) return;
         const effort = content.efforts[i] ?? 0;
-        const part = usedPart(effort, content.limits[i] ?? 0) + LEAST;
-        const radius = LEAST + (part * scale) / 2;
+        const part = usedShare(effort, content.limits[i] ?? 0) + MIN_RADIUS;
+        const radius = MIN_RADIUS + (part * scale) / 2;
         const [r, g, b] = rainbow(part);
         poseAt(content.poses, i, pose);
         strips.push(ring(pose, radius, Math.sign(effort)));
@@ -65,8 +65,8 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
   }
 }
 
-/** The used part of an effort's limit, at most 1; of a joint without limit the effort itself. */
-function usedPart(effort: number, limit: number): number {
+/** Returns the used share of an effort's limit, at most 1; for a joint without a limit, the effort itself. */
+function usedShare(effort: number, limit: number): number {
   return limit === 0 ? Math.abs(effort) : Math.min(Math.abs(effort) / limit, 1);
 }
 
@@ -81,7 +81,7 @@ function ring(pose: Matrix4, radius: number, direction: number): Float32Array {
   return strip;
 }
 
-/** RViz's colours of efforts: from violet for 0 by blue, green and yellow to red for 1. */
+/** Returns RViz's colour of an effort: from violet for 0 via blue, green and yellow to red for 1. */
 export function rainbow(value: number): [number, number, number] {
   const hue = Math.min(1, Math.max(0, value)) * 5 + 1;
   const sector = Math.floor(hue);

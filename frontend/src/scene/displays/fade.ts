@@ -1,14 +1,17 @@
-/** The look of a frame that was not updated for a while. */
+/** How a frame that was not updated for a while is drawn. */
 export interface Fade {
-  /** 0 its own colours, 1 all grey. */
+  /** 0: its own colours, 1: grey. */
   grey: number;
-  /** 1 opaque, 0 gone. */
+  /** 1: opaque, 0: invisible. */
   alpha: number;
 }
 
 const FRESH: Fade = { grey: 0, alpha: 1 };
 
-/** RViz's ageing: a third of the timeout unchanged, a third turning grey, a third fading away. Seconds. */
+/**
+ * Returns RViz's fading for an age, s: unchanged for a third of the timeout, turning grey for a third, fading out for a
+ * third.
+ */
 export function fadeForAge(age: number, timeout: number): Fade {
   const third = timeout / 3;
   if (!(age > third)) return FRESH;

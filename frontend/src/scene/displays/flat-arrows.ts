@@ -1,7 +1,7 @@
 import { Matrix4, Vector3 } from "three";
 import { poseAt } from "./styles";
 
-/** An arrow of three lines, one metre long: back, tip, tip, one barb, tip, the other. */
+/** An arrow of three lines, one metre long: start to tip, tip to one barb, tip to the other barb. */
 const FLAT_ARROW = [
   [0, 0],
   [1, 0],
@@ -11,7 +11,9 @@ const FLAT_ARROW = [
   [0.75, -0.2],
 ] as const;
 
-/** Arrows of lines at poses in a frame, as segments in the fixed frame; `lengthOf` each, m. */
+/**
+ * Returns line arrows at poses in a frame, as segments in the fixed frame; `lengthOf` returns each arrow's length, m.
+ */
 export function flatArrows(poses: Float32Array, frame: Matrix4, lengthOf: (pose: number) => number): Float32Array {
   const count = poses.length / 7;
   const result = new Float32Array(count * FLAT_ARROW.length * 3);

@@ -5,7 +5,7 @@ import { AxesBatch } from "../objects/axes-batch";
 const AXIS_LENGTH = 0.2;
 const AXIS_RADIUS = 0.02;
 
-/** Axes and arrows of all frames, as round as there is time for. */
+/** The axes and arrows of all frames, with as many segments as the frame time permits. */
 export class FrameMarkers {
   readonly axes: AxesBatch;
   arrows: ArrowBatch;

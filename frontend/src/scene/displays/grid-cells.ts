@@ -7,7 +7,7 @@ import type { Hit } from "../picking";
 import { dataPose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
-/** rviz_default_plugins/GridCells: flat cells in the plane of their frame. */
+/** rviz_default_plugins/GridCells: flat cells in the xy plane of their frame. */
 export class GridCellsDrawing implements Drawing {
   readonly root = new Group();
   private data: DisplayData | null = null;

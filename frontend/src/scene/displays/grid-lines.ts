@@ -1,4 +1,4 @@
-/** The shape of a grid; lengths in metres. */
+/** The shape of a grid; lengths in m. */
 export interface GridShape {
   cells: number;
   normalCells: number;
@@ -7,15 +7,15 @@ export interface GridShape {
 }
 
 /**
- * Both ends (x y z, x y z) of every line of a grid centred on the origin, as RViz's Grid builds it: `normalCells` + 1
- * layers of `cells` x `cells` cells, joined by lines along the normal.
+ * Returns both ends (x y z, x y z) of every line of a grid centred on the origin, as in RViz's Grid: `normalCells` + 1
+ * layers of `cells` x `cells` cells, connected by lines along the normal.
  */
 export function gridLines({ cells, normalCells, cellSize, plane }: GridShape): Float32Array {
   const points: number[] = [];
   const extent = (cells * cellSize) / 2;
   const top = (normalCells * cellSize) / 2;
   const line = (a: readonly number[], b: readonly number[]): void => {
-    points.push(...turned(a, plane), ...turned(b, plane));
+    points.push(...inPlane(a, plane), ...inPlane(b, plane));
   };
   for (let layer = 0; layer <= normalCells; layer++) {
     const z = top - layer * cellSize;
@@ -37,35 +37,38 @@ export function gridLines({ cells, normalCells, cellSize, plane }: GridShape): F
 }
 
 /**
- * The same lines, each as many pieces end to end. A line with an end behind the camera is left out whole by Chromium's
- * software renderer (SwiftShader), which would take the lines at the viewer's feet; of pieces only the nearest goes.
+ * Splits lines into a number of pieces each. Chromium's software renderer (SwiftShader) drops a line with an end behind
+ * the camera, and with it the lines at the viewer's feet; of a split line it drops only the nearest piece.
  */
-export function inPieces(lines: Float32Array, pieces: number): Float32Array {
-  const found = new Float32Array(lines.length * pieces);
+export function splitLines(lines: Float32Array, pieces: number): Float32Array {
+  const result = new Float32Array(lines.length * pieces);
   let at = 0;
   for (let line = 0; line < lines.length; line += 6) {
     const [ax = 0, ay = 0, az = 0, bx = 0, by = 0, bz = 0] = lines.subarray(line, line + 6);
     for (let end = 0; end < 2 * pieces; end++) {
       const share = (end + 1) >> 1;
       const ratio = share / pieces;
-      found[at++] = ax + (bx - ax) * ratio;
-      found[at++] = ay + (by - ay) * ratio;
-      found[at++] = az + (bz - az) * ratio;
+      result[at++] = ax + (bx - ax) * ratio;
+      result[at++] = ay + (by - ay) * ratio;
+      result[at++] = az + (bz - az) * ratio;
     }
   }
-  return found;
+  return result;
 }
 
-/** The colours r g b a of ends of lines around the origin, which fade towards the farthest: a ground does not end. */
-export function shadesOf(ends: Float32Array): Float32Array {
+/**
+ * Returns the colours (r g b a) of line ends around the origin, which fade out with the distance, as the ground has no
+ * edge.
+ */
+export function fadedColors(ends: Float32Array): Float32Array {
   const shades = new Float32Array((ends.length / 3) * 4).fill(1);
   const far = (i: number): number => Math.hypot(ends[i] ?? 0, ends[i + 1] ?? 0, ends[i + 2] ?? 0);
-  const farthest = ends.reduce((most, each) => Math.max(most, Math.abs(each)), 0);
+  const farthest = ends.reduce((most, end) => Math.max(most, Math.abs(end)), 0);
   for (let i = 0; i < ends.length; i += 3) shades[(i / 3) * 4 + 3] = Math.max(0, 1 - (far(i) / farthest) ** 2);
   return shades;
 }
 
-function turned([a = 0, b = 0, normal = 0]: readonly number[], plane: string): [number, number, number] {
+function inPlane([a = 0, b = 0, normal = 0]: readonly number[], plane: string): [number, number, number] {
   if (plane === "XZ") return [a, normal, b];
   if (plane === "YZ") return [normal, a, b];
   return [a, b, normal];

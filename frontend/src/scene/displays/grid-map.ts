@@ -1,11 +1,11 @@
 import { BufferAttribute, BufferGeometry, DoubleSide, Matrix4, Mesh, MeshLambertMaterial, Vector3, type Box3 } from "three";
 import type { GridSurface } from "../../protocol";
 import { OPAQUE_FROM } from "../materials";
-import { joined, ThinLines } from "../objects/thin-lines";
+import { concatenated, ThinLines } from "../objects/thin-lines";
 import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 
-/** grid_map_rviz_plugin/GridMap: a surface through the middles of cells, and lines between them. */
+/** grid_map_rviz_plugin/GridMap: a surface through the centres of the cells, and lines between them. */
 export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
   private readonly lines = new ThinLines();
   private readonly surfaces = new Map<GridSurface, Mesh<BufferGeometry, MeshLambertMaterial>>();
@@ -17,10 +17,10 @@ export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
 
   dispose(): void {
     this.lines.dispose();
-    for (const surface of [...this.surfaces.keys()]) this.drop(surface);
+    for (const surface of [...this.surfaces.keys()]) this.remove(surface);
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     const shown = [...this.surfaces.values()];
     const triangles = shown.reduce((sum, { geometry, visible }) => sum + (visible ? (geometry.index?.count ?? 0) / 3 : 0), 0);
     return { triangles, lines: this.lines.root.visible ? this.lines.count : 0 };
@@ -36,7 +36,7 @@ export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
     const alpha = rows.number(1, "Alpha");
     const placed = this.placed();
     const now = new Set(placed.map(({ content }) => content));
-    for (const old of [...this.surfaces.keys()]) if (!now.has(old)) this.drop(old);
+    for (const old of [...this.surfaces.keys()]) if (!now.has(old)) this.remove(old);
     for (const { content, pose } of placed) {
       const mesh = this.surfaces.get(content) ?? this.make(content);
       pose.decompose(mesh.position, mesh.quaternion, new Vector3());
@@ -46,7 +46,7 @@ export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
       mesh.material.depthWrite = alpha >= OPAQUE_FROM;
     }
     const segments = rows.bool(true, "Show Grid Lines") ? placed.map(({ content, pose }) => segmentsOf(content, pose)) : [];
-    this.lines.setSegments(joined(segments));
+    this.lines.setSegments(concatenated(segments));
     this.lines.setStyle("#000000", alpha);
   }
 
@@ -62,7 +62,7 @@ export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
     return mesh;
   }
 
-  private drop(content: GridSurface): void {
+  private remove(content: GridSurface): void {
     const mesh = this.surfaces.get(content);
     mesh?.removeFromParent();
     mesh?.geometry.dispose();
@@ -71,7 +71,7 @@ export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
   }
 }
 
-function isThere({ colors }: GridSurface, cell: number): boolean {
+function exists({ colors }: GridSurface, cell: number): boolean {
   return colors[cell * 4 + 3] !== 0;
 }
 
@@ -81,14 +81,14 @@ function colorsOf({ colors }: GridSurface): Uint8Array {
   return result;
 }
 
-/** Two triangles between four cells that exist, one between three of them. */
+/** Returns the triangles: two between four existing cells, one between three. */
 function trianglesOf(content: GridSurface): number[] {
   const { rows, columns } = content;
   const result: number[] = [];
   for (let row = 0; row + 1 < rows; row++) {
     for (let column = 0; column + 1 < columns; column++) {
       const first = row * columns + column;
-      const corners = [first, first + columns, first + columns + 1, first + 1].filter((cell) => isThere(content, cell));
+      const corners = [first, first + columns, first + columns + 1, first + 1].filter((cell) => exists(content, cell));
       const [a = 0, b = 0, c = 0, d = 0] = corners;
       if (corners.length >= 3) result.push(a, b, c);
       if (corners.length === 4) result.push(a, c, d);
@@ -104,7 +104,7 @@ function segmentsOf(content: GridSurface, pose: Matrix4): Float32Array {
   for (let i = 0; i < points.length; i += 3) at.fromArray(points, i).applyMatrix4(pose).toArray(placed, i);
   const result: number[] = [];
   const connect = (one: number, other: number): void => {
-    if (isThere(content, one) && isThere(content, other)) result.push(...placed.subarray(one * 3, one * 3 + 3), ...placed.subarray(other * 3, other * 3 + 3));
+    if (exists(content, one) && exists(content, other)) result.push(...placed.subarray(one * 3, one * 3 + 3), ...placed.subarray(other * 3, other * 3 + 3));
   };
   for (let row = 0; row < rows; row++) {
     for (let column = 0; column < columns; column++) {

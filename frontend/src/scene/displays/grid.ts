@@ -3,10 +3,10 @@ import { FIXED_FRAME } from "../../state/view";
 import { WideLines } from "../objects/wide-lines";
 import { framePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
-import { gridLines, inPieces, shadesOf } from "./grid-lines";
+import { gridLines, splitLines, fadedColors } from "./grid-lines";
 
-/** As many cells have lines of a piece for each; more are not made of more pieces. */
-const MOST_PIECES = 20;
+/** The maximum number of pieces of a line; up to it, a line has one piece for each cell. */
+const MAX_PIECES = 20;
 
 /** rviz_default_plugins/Grid */
 export class GridDrawing implements Drawing {
@@ -40,11 +40,11 @@ export class GridDrawing implements Drawing {
     this.billboards.root.position.set(...offset);
     this.billboards.setSegments(wide ? segments : new Float32Array(0));
     this.billboards.setStyle(color, alpha, rows.number(0.03, "Line Style", "Line Width"));
-    const pieces = wide ? new Float32Array(0) : inPieces(segments, Math.max(1, Math.min(cells, MOST_PIECES)));
+    const pieces = wide ? new Float32Array(0) : splitLines(segments, Math.max(1, Math.min(cells, MAX_PIECES)));
     this.lines.geometry.dispose();
     this.lines.geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(pieces, 3));
     this.fades = this.context.session.displays.hasBackdrop;
-    const shades = this.fades ? shadesOf(pieces) : null;
+    const shades = this.fades ? fadedColors(pieces) : null;
     if (shades) this.lines.geometry.setAttribute("color", new Float32BufferAttribute(shades, 4));
     this.lines.material.vertexColors = shades !== null;
     this.lines.material.color.set(color);
@@ -65,7 +65,7 @@ export class GridDrawing implements Drawing {
     if (this.frame === FIXED_FRAME || this.frame === displays.fixedFrame) {
       this.root.matrix.identity();
     } else {
-      // Without a transform RViz leaves the grid where it was.
+      // Without a transform, RViz leaves the grid in place.
       framePose(frames, frames.row(this.frame), this.root.matrix);
     }
     this.root.matrixWorldNeedsUpdate = true;

@@ -6,45 +6,45 @@ import { OwnPanel } from "../images/own-panel";
 import { ImageCanvas } from "../images/image-canvas";
 import type { Drawing, DrawingContext } from "./drawing";
 
-/** rviz_default_plugins/Image: nothing in the scene, a panel of its own with the image. */
+/** rviz_default_plugins/Image: a panel of its own with the image, and nothing in the scene. */
 export class ImageDrawing implements Drawing {
   readonly root = new Group();
   readonly isElsewhere = true;
   private readonly image: ImageCanvas;
   protected readonly panel: OwnPanel;
-  /** When the image on the canvas was taken, s. */
+  /** The stamp of the image on the canvas, s. */
   protected imageStamp = 0;
   private frame: ImageFrame | null = null;
   private readonly resizing = new ResizeObserver(() => {
-    this.tellSize();
-    this.painted();
+    this.sendSize();
+    this.onPainted();
   });
   private readonly stopListening: (() => void)[];
   private state: "none" | "shown" | "unreadable" = "none";
 
   constructor(protected readonly context: DrawingContext) {
-    this.image = new ImageCanvas(context.beside);
+    this.image = new ImageCanvas(context.showWithFrame);
     this.panel = new OwnPanel(context, "image", this.image.canvas);
-    this.explain();
-    this.panel.match();
+    this.showState();
+    this.panel.update();
     this.resizing.observe(this.panel.element);
     const { connection, displays } = context.session;
-    this.stopListening = [connection.on("tree", () => this.tellSize()), displays.statusChanged.on(() => this.explain())];
+    this.stopListening = [connection.on("tree", () => this.sendSize()), displays.statusChanged.on(() => this.showState())];
   }
 
   propertiesChanged(): void {
-    this.panel.match();
+    this.panel.update();
   }
 
   dataChanged({ content, stamp }: DisplayData): void {
     if (content.kind !== "image_frame") return;
     this.frame = content;
-    this.image.take(content, (shown) => {
+    this.image.show(content, (shown) => {
       this.state = shown ? "shown" : "unreadable";
-      this.explain();
+      this.showState();
       if (!shown) return;
       this.imageStamp = stamp;
-      this.painted();
+      this.onPainted();
     });
   }
 
@@ -53,11 +53,11 @@ export class ImageDrawing implements Drawing {
     this.frame = null;
     this.image.clear();
     this.state = "none";
-    this.explain();
+    this.showState();
   }
 
   update(): void {
-    // It has no place in the scene.
+    // The display draws nothing into the scene.
   }
 
   inspect(): object {
@@ -71,12 +71,12 @@ export class ImageDrawing implements Drawing {
     };
   }
 
-  /** The image has come onto the canvas, or the panel has another size. */
-  protected painted(): void {
-    // Nothing is drawn over it.
+  /** Called when a new image is on the canvas, or the panel was resized. */
+  protected onPainted(): void {
+    // An image alone has no overlay.
   }
 
-  /** Pixels of the message's image, 0 while there is none. */
+  /** The size of the message's image in pixels; 0 while there is none. */
   protected get size(): { width: number; height: number } {
     const { canvas } = this.image;
     return { width: this.frame?.width || canvas.width, height: this.frame?.height || canvas.height };
@@ -88,16 +88,16 @@ export class ImageDrawing implements Drawing {
     this.panel.close();
   }
 
-  /** Shows the reason why there is no image, as a rule from the display's status. */
-  private explain(): void {
+  /** Shows why there is no image, usually with a text of the display's status. */
+  private showState(): void {
     const { none, unreadable } = strings.images;
-    const cause = this.context.display.troubles[0]?.text;
-    if (this.state === "shown") this.panel.say("");
-    else this.panel.say(this.state === "unreadable" ? unreadable : none, cause);
+    const cause = this.context.display.problems[0]?.text;
+    if (this.state === "shown") this.panel.showText("");
+    else this.panel.showText(this.state === "unreadable" ? unreadable : none, cause);
   }
 
-  /** Tells the server the panel's size, since more pixels need not be sent. */
-  private tellSize(): void {
+  /** Sends the panel's size to the server, which need not send more pixels than that. */
+  private sendSize(): void {
     const { display, session } = this.context;
     const pixels = (points: number): number => Math.ceil(points * window.devicePixelRatio);
     const { clientWidth, clientHeight } = this.panel.element;

@@ -6,11 +6,11 @@ import { strings } from "../../strings";
 import { describedPose } from "../described-pose";
 import type { ControlHandle } from "../interactive/control-handle";
 import { MarkerHandle } from "../interactive/marker-handle";
-import type { Described, Hit, Interaction, ScenePointer } from "../picking";
+import type { DescriptionRow, Hit, Interaction, ScenePointer } from "../picking";
 import { poseMatrix } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
-/** Poses told to the server while something is dragged, at most one in so many milliseconds. */
+/** ms; while a marker is dragged, its pose is sent at most once in this interval. */
 const FEEDBACK_MS = 33;
 
 /** rviz_default_plugins/InteractiveMarkers */
@@ -18,12 +18,12 @@ export class InteractiveMarkersDrawing implements Drawing {
   readonly root = new Group();
   private readonly markers = new Map<string, MarkerHandle>();
   private interaction: Interaction = { enabled: false, hideOthers: false };
-  private told = 0;
+  private lastFeedbackMs = 0;
 
   constructor(private readonly context: DrawingContext) {}
 
   propertiesChanged(): void {
-    // Read again in update().
+    // Properties are read in update().
   }
 
   dataChanged(data: DisplayData): void {
@@ -31,7 +31,7 @@ export class InteractiveMarkersDrawing implements Drawing {
     if (content.kind === "interactive_marker_moved") {
       this.markers.get(content.name)?.move(data, content.pose);
     } else if (content.kind === "interactive_marker") {
-      this.forget(content.name);
+      this.remove(content.name);
       const marker = new MarkerHandle(content, data, this.context.meshes, this.context.invalidate);
       this.markers.set(content.name, marker);
       this.root.add(marker.root);
@@ -39,8 +39,8 @@ export class InteractiveMarkersDrawing implements Drawing {
   }
 
   dataForgotten(key: string | null): void {
-    if (key === null) for (const name of [...this.markers.keys()]) this.forget(name);
-    else if (key.startsWith(MARKER_KEY)) this.forget(key.slice(MARKER_KEY.length));
+    if (key === null) for (const name of [...this.markers.keys()]) this.remove(name);
+    else if (key.startsWith(MARKER_KEY)) this.remove(key.slice(MARKER_KEY.length));
   }
 
   update(): void {
@@ -72,7 +72,7 @@ export class InteractiveMarkersDrawing implements Drawing {
     return best;
   }
 
-  describe(key: string): Described | null {
+  describe(key: string): DescriptionRow | null {
     const found = this.find(key);
     if (!found) return null;
     return {
@@ -108,15 +108,15 @@ export class InteractiveMarkersDrawing implements Drawing {
         invalidate();
         return true;
       case "down":
-        return this.pressed(event, event.hit, marker, control);
+        return this.onPointerDown(event, event.hit, marker, control);
       case "move":
         if (marker.follow(event, camera())) {
-          this.tell(marker, control);
+          this.sendPose(marker, control);
           invalidate();
         }
         return true;
       case "up":
-        this.released(event, marker, control);
+        this.onPointerUp(event, marker, control);
         return true;
       case "wheel":
         return marker.isHeld;
@@ -128,7 +128,7 @@ export class InteractiveMarkersDrawing implements Drawing {
       [...this.markers].map(([name, marker]) => {
         const box = new Box3().setFromObject(marker.root);
         const bounds = [box.min.toArray(), box.max.toArray()];
-        return [name, { pose: marker.values, controls: marker.controls.length, aided: marker.isAided, bounds }];
+        return [name, { pose: marker.values, controls: marker.controls.length, aided: marker.isAidShown, bounds }];
       }),
     );
   }
@@ -137,7 +137,7 @@ export class InteractiveMarkersDrawing implements Drawing {
     this.dataForgotten(null);
   }
 
-  private pressed(event: ScenePointer, hit: Hit, marker: MarkerHandle, control: ControlHandle): boolean {
+  private onPointerDown(event: ScenePointer, hit: Hit, marker: MarkerHandle, control: ControlHandle): boolean {
     const { menu } = marker.shape;
     if (menu.length > 0 && (event.button === "right" || control.control.mode === "menu")) {
       this.context.session.sceneMenu.emit({ x: event.x, y: event.y, choices: this.choices(marker, control, menu, 0) });
@@ -150,9 +150,9 @@ export class InteractiveMarkersDrawing implements Drawing {
     return true;
   }
 
-  private released(event: ScenePointer, marker: MarkerHandle, control: ControlHandle): void {
+  private onPointerUp(event: ScenePointer, marker: MarkerHandle, control: ControlHandle): void {
     if (!marker.isHeld) return;
-    marker.letGo();
+    marker.release();
     if (control.control.mode === "button") this.send(marker, control, "button_click");
     else if (control.control.mode !== "none") this.send(marker, control, "pose_update");
     this.send(marker, control, "mouse_up");
@@ -177,10 +177,10 @@ export class InteractiveMarkersDrawing implements Drawing {
       });
   }
 
-  private tell(marker: MarkerHandle, control: ControlHandle): void {
+  private sendPose(marker: MarkerHandle, control: ControlHandle): void {
     const now = performance.now();
-    if (now - this.told < FEEDBACK_MS) return;
-    this.told = now;
+    if (now - this.lastFeedbackMs < FEEDBACK_MS) return;
+    this.lastFeedbackMs = now;
     this.send(marker, control, "pose_update");
   }
 
@@ -188,7 +188,7 @@ export class InteractiveMarkersDrawing implements Drawing {
     this.context.session.connection.send(marker.feedback(control, event));
   }
 
-  private forget(name: string): void {
+  private remove(name: string): void {
     this.markers.get(name)?.dispose();
     this.markers.delete(name);
   }

@@ -3,8 +3,8 @@ export type MapScheme = "map" | "costmap" | "raw";
 const UNKNOWN = [0x70, 0x89, 0x86, 255] as const;
 
 /**
- * RViz's colours of the bytes of an occupancy grid: 256 times red, green, blue, alpha. `threshold` is the least value
- * that counts as occupied, or null for the shades in between.
+ * Returns RViz's colours for the byte values of an occupancy grid: 256 times red, green, blue, alpha. `threshold` is
+ * the smallest value that counts as occupied, or null for continuous shades.
  */
 export function mapPalette(scheme: MapScheme, threshold: number | null): Uint8Array {
   const palette = new Uint8Array(256 * 4);
@@ -17,7 +17,7 @@ type Rgba = readonly [number, number, number, number];
 function colorOf(scheme: MapScheme, value: number, threshold: number | null): Rgba {
   if (scheme === "raw") return grey(threshold === null ? value : value < threshold ? 0 : 255);
   if (value === 255) return UNKNOWN;
-  // Values that a grid must not have: more than 100 green, less than -1 from red to yellow.
+  // Invalid values: green above 100, red to yellow below -1.
   if (value >= 128) return [255, Math.floor((255 * (value - 128)) / 126), 0, 255];
   if (value > 100) return [0, 255, 0, 255];
   if (threshold !== null) {

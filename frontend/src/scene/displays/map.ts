@@ -7,8 +7,8 @@ import { dataPose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 import { mapPalette, type MapScheme } from "./map-palette";
 
-/** Maps are drawn before other things one sees through, costmaps over maps. */
-const ORDERS: Readonly<Record<MapScheme, number>> = { map: -3, raw: -2, costmap: -1 };
+/** Maps are drawn before other transparent objects, and costmaps over maps. */
+const RENDER_ORDERS: Readonly<Record<MapScheme, number>> = { map: -3, raw: -2, costmap: -1 };
 
 /** rviz_default_plugins/Map */
 export class MapDrawing implements Drawing {
@@ -35,7 +35,7 @@ export class MapDrawing implements Drawing {
       alpha: rows.number(0.7, "Alpha"),
       seeThrough: scheme !== "map",
       behind: rows.bool(false, "Draw Behind"),
-      order: ORDERS[scheme],
+      order: RENDER_ORDERS[scheme],
     });
   }
 
@@ -72,12 +72,12 @@ export class MapDrawing implements Drawing {
     return { key: "", distance: point.distanceTo(ray.origin), point, isGround: true };
   }
 
-  /** Its cells, `384 x 256`; empty without a map. */
+  /** The size in cells, such as `384 x 256`; empty without a map. */
   get size(): string {
     return this.map ? `${this.map.width} x ${this.map.height}` : "";
   }
 
-  /** The box around it in the fixed frame, m; empty if no map is shown. */
+  /** Returns the bounding box of the map in the fixed frame, m; empty if no map is shown. */
   bounds(): Box3 {
     this.update();
     return this.plane.root.visible ? new Box3().setFromPoints(this.corners()) : new Box3();

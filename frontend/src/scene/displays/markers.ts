@@ -4,28 +4,28 @@ import type { MarkerShape } from "../../protocol";
 import { describedNumbers, describedPose } from "../described-pose";
 import { makeMarkerObject, type MarkerObject } from "../markers/marker-object";
 import { isSolid, SolidMarkers, surfacesOf } from "../markers/solid-markers";
-import type { Described, Hit, SelectionBox } from "../picking";
+import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import { framePose, poseMatrix } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
-interface Shown {
+interface ShownMarker {
   marker: MarkerShape;
-  /** Of the marker in its frame, or in the fixed frame. */
+  /** The pose of the marker in its frame, or in the fixed frame. */
   pose: Matrix4;
   object: MarkerObject | null;
-  /** What a ray meets of a marker that is drawn with others in one call; kept, for the mouse asks with each step. */
+  /** The surfaces for ray tests of a marker that is drawn in a batch; cached, because every mouse move tests them. */
   surfaces: Object3D[] | null;
 }
 
 /** rviz_default_plugins/Marker and MarkerArray */
 export class MarkersDrawing implements Drawing {
   readonly root = new Group();
-  /** Null until there is a marker for them: of a file's hundred such displays few are ever sent one. */
+  /** Null until a marker needs it: of a hundred such displays in a file, few ever receive one. */
   private solids: SolidMarkers | null = null;
-  private readonly shown = new Map<string, Shown>();
+  private readonly shown = new Map<string, ShownMarker>();
   private hidden = new Set<string>();
-  private solidsStale = false;
-  /** Markers that are drawn with others in one call have objects for their outlines, which nothing else draws. */
+  private areSolidsStale = false;
+  /** Objects for outlining the markers that are drawn in batches; nothing else draws these objects. */
   private readonly outlined = new Map<string, readonly Object3D[]>();
 
   constructor(private readonly context: DrawingContext) {
@@ -35,7 +35,7 @@ export class MarkersDrawing implements Drawing {
   propertiesChanged(): void {
     const boxes = this.context.display.rows.find("Namespaces")?.children ?? [];
     this.hidden = new Set(boxes.filter((row) => row.value === false).map((row) => row.name));
-    this.solidsStale = true;
+    this.areSolidsStale = true;
   }
 
   dataChanged({ content }: DisplayData): void {
@@ -43,18 +43,18 @@ export class MarkersDrawing implements Drawing {
     if (content.everything) this.dataForgotten();
     for (const id of content.gone) this.remove(id);
     for (const marker of content.markers) this.show(marker);
-    this.solidsStale = true;
+    this.areSolidsStale = true;
   }
 
   dataForgotten(): void {
     for (const id of [...this.shown.keys()]) this.remove(id);
-    this.solidsStale = true;
+    this.areSolidsStale = true;
   }
 
   update(): void {
     this.forgetOutlines();
     const pose = new Matrix4();
-    let moved = this.solidsStale;
+    let moved = this.areSolidsStale;
     for (const { marker, object, pose: own } of this.shown.values()) {
       if (!object) {
         moved ||= marker.frame !== "";
@@ -89,7 +89,7 @@ export class MarkersDrawing implements Drawing {
       .map(([key]) => key);
   }
 
-  describe(key: string): Described | null {
+  describe(key: string): DescriptionRow | null {
     const shown = this.shown.get(key);
     if (!shown) return null;
     const { marker } = shown;
@@ -140,14 +140,14 @@ export class MarkersDrawing implements Drawing {
     this.outlined.clear();
   }
 
-  /** The surfaces that a ray can hit. */
-  private surfacesOf(shown: Shown): Object3D[] {
+  /** Returns the surfaces that a ray can hit. */
+  private surfacesOf(shown: ShownMarker): Object3D[] {
     if (shown.object) return [shown.object.root];
     if (shown.marker.frame !== "") return this.makeSurfaces(shown); // it moves
     return (shown.surfaces ??= this.makeSurfaces(shown));
   }
 
-  private makeSurfaces({ marker, pose: own }: Shown): Object3D[] {
+  private makeSurfaces({ marker, pose: own }: ShownMarker): Object3D[] {
     const pose = new Matrix4();
     return this.place(marker, own, pose) ? surfacesOf(marker, pose) : [];
   }
@@ -155,7 +155,7 @@ export class MarkersDrawing implements Drawing {
   private show(marker: MarkerShape): void {
     const pose = poseMatrix(marker.pose, new Matrix4());
     const before = this.shown.get(marker.id);
-    if (before?.object && looksSame(before.marker, marker)) {
+    if (before?.object && hasSameMesh(before.marker, marker)) {
       this.shown.set(marker.id, { marker, pose, object: before.object, surfaces: null });
       return;
     }
@@ -182,7 +182,7 @@ export class MarkersDrawing implements Drawing {
     this.shown.delete(id);
   }
 
-  /** Writes the marker's pose in the fixed frame; false where its frame has no transform. */
+  /** Computes the marker's pose in the fixed frame; returns false if its frame has no transform. */
   private place(marker: MarkerShape, own: Matrix4, pose: Matrix4): boolean {
     if (marker.frame === "") {
       pose.copy(own);
@@ -196,7 +196,7 @@ export class MarkersDrawing implements Drawing {
   }
 
   private arrangeSolids(): void {
-    this.solidsStale = false;
+    this.areSolidsStale = false;
     this.solids?.begin();
     for (const { marker, object, pose: own } of this.shown.values()) {
       if (object || this.hidden.has(marker.namespace)) continue;
@@ -207,8 +207,8 @@ export class MarkersDrawing implements Drawing {
   }
 }
 
-/** Whether a mesh has only moved: it need not be made, and loaded, again. */
-function looksSame(one: MarkerShape, other: MarkerShape): boolean {
+/** Whether a mesh marker only moved, so that its mesh need not be loaded again. */
+function hasSameMesh(one: MarkerShape, other: MarkerShape): boolean {
   const file = one.mesh?.url ?? null;
   return (
     file !== null &&

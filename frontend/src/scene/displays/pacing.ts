@@ -1,17 +1,17 @@
-/** Limits a display to one update in its Update Interval, and asks for the frame that is then due. */
+/** Limits a display to one update per Update Interval, and requests the frame for the next one. */
 export class Pacing {
   private last = -Infinity;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly invalidate: () => void) {}
 
-  /** Whether a frame is still to be asked for. */
-  get waiting(): boolean {
+  /** Whether a frame is scheduled. */
+  get isWaiting(): boolean {
     return this.timer !== undefined;
   }
 
-  /** Whether to update in the frame of this moment; `interval` in milliseconds, 0 for every frame. */
-  due(now: number, interval: number): boolean {
+  /** Returns whether to update in a frame at this time; `interval` in ms, 0 for every frame. */
+  isDue(now: number, interval: number): boolean {
     const wait = this.last + interval - now;
     if (wait <= 0) {
       this.last = now;
@@ -24,7 +24,7 @@ export class Pacing {
     return false;
   }
 
-  /** Makes the next frame update whatever the interval: what the user changes shows at once. */
+  /** Makes the next frame update regardless of the interval, so that changes by the user show immediately. */
   restart(): void {
     this.last = -Infinity;
     clearTimeout(this.timer);

@@ -7,13 +7,13 @@ import type { DrawingContext } from "./drawing";
 import { flatArrows } from "./flat-arrows";
 import { colorOf, poseAt } from "./styles";
 
-/** Of an arrow, as shares of its shaft's length; axes are as thick as the shaft. */
+/** Dimensions of an arrow relative to the length of its shaft; axes are as thick as the shaft. */
 const SHAFT_DIAMETER = 0.0435;
 const HEAD_LENGTH = 0.3043;
 const HEAD_DIAMETER = 0.1304;
 const SEGMENTS = 8;
 
-/** nav2_rviz_plugins/ParticleCloud: poses that are the larger, and the higher, the likelier they are. */
+/** nav2_rviz_plugins/ParticleCloud: poses, drawn larger and higher the likelier they are. */
 export class ParticleCloudDrawing extends ContentDrawing<"particle_marks"> {
   private readonly lines = new ThinLines();
   private readonly arrows = new ArrowBatch(this.root, SEGMENTS);
@@ -28,7 +28,7 @@ export class ParticleCloudDrawing extends ContentDrawing<"particle_marks"> {
     for (const part of [this.lines, this.arrows, this.axes]) part.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { arrows: this.arrows.size, axes: this.axes.size };
   }
 
@@ -41,7 +41,7 @@ export class ParticleCloudDrawing extends ContentDrawing<"particle_marks"> {
     const [placed] = this.placed();
     const frame = placed?.pose ?? new Matrix4();
     const weights: Float32Array = placed?.content.weights ?? new Float32Array(0);
-    const poses = raised(placed?.content.poses ?? new Float32Array(0), weights, rows.number(5, "Arrow Height Scale"));
+    const poses = raiseByWeight(placed?.content.poses ?? new Float32Array(0), weights, rows.number(5, "Arrow Height Scale"));
     const [shortest, longest] = [rows.number(0.02, "Min Arrow Length"), rows.number(0.3, "Max Arrow Length")];
     const lengthOf = (i: number): number => shortest + (longest - shortest) * Math.min(Math.max(weights[i] ?? 0, 0), 1);
     const look = { color: colorOf(rows, "#ff1900", "Color"), alpha: rows.number(1, "Alpha") };
@@ -71,8 +71,10 @@ function arrowOf(length: number): { shaftLength: number; shaftDiameter: number; 
   };
 }
 
-/** Poses as high as they are likely, as nav2 draws them: what is known of their own height is that they are on the ground. */
-function raised(poses: Float32Array, weights: Float32Array, scale: number): Float32Array {
+/**
+ * Raises poses by their weights, as nav2 draws them. Their own height carries no information: they are on the ground.
+ */
+function raiseByWeight(poses: Float32Array, weights: Float32Array, scale: number): Float32Array {
   const result = poses.slice();
   weights.forEach((weight, i) => (result[i * 7 + 2] = weight * scale));
   return result;

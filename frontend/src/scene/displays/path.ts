@@ -9,7 +9,7 @@ import { colorOf, poseAt } from "./styles";
 
 const SEGMENTS = 10;
 
-/** rviz_default_plugins/Path: lines through the poses of each path, and the poses themselves. */
+/** rviz_default_plugins/Path: lines through the poses of each path, and optionally the poses themselves. */
 export class PathDrawing extends ContentDrawing<"pose_marks"> {
   private readonly thin = new ThinLines();
   private readonly wide = new WideLines();
@@ -26,7 +26,7 @@ export class PathDrawing extends ContentDrawing<"pose_marks"> {
     for (const part of [this.thin, this.wide, this.arrows, this.axes]) part.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { points: this.points, arrows: this.arrows.size, axes: this.axes.size, wide: this.wide.root.visible };
   }
 

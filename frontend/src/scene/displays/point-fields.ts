@@ -1,20 +1,20 @@
 import type { PointFields } from "../../protocol";
 import type { DrawingContext } from "./drawing";
 
-/** The fields of selected points, asked of the server when they are wanted. */
+/** The fields of selected points, requested from the server on demand. */
 export class PointFieldStore {
   private readonly known = new Map<string, PointFields["fields"] | null>();
-  private readonly forgetAnswers: () => void;
+  private readonly stopListening: () => void;
 
   constructor(private readonly context: DrawingContext) {
-    this.forgetAnswers = context.session.connection.on("point_fields", (answer) => {
+    this.stopListening = context.session.connection.on("point_fields", (answer) => {
       if (answer.display !== context.display.id) return;
       this.known.set(`${answer.key}:${answer.index}`, answer.fields);
       context.session.selection.changed.emit(context.session.selection.selected);
     });
   }
 
-  /** The fields of a point by name; null until the answer came. */
+  /** Returns the fields of a point by name; null until the server has answered. */
   of(cloud: string, index: number): PointFields["fields"] | null {
     const key = `${cloud}:${index}`;
     const fields = this.known.get(key);
@@ -24,12 +24,12 @@ export class PointFieldStore {
     return null;
   }
 
-  /** The points under a key are other ones now. */
+  /** Drops the fields of a cloud whose points were replaced. */
   forget(cloud: string): void {
     for (const key of this.known.keys()) if (key.startsWith(`${cloud}:`)) this.known.delete(key);
   }
 
   dispose(): void {
-    this.forgetAnswers();
+    this.stopListening();
   }
 }

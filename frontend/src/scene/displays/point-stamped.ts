@@ -1,15 +1,15 @@
 import { Matrix4, type Box3 } from "three";
 import { CopyBatch } from "../objects/copy-batch";
-import { ballGeometry } from "../objects/geometries";
+import { sphereGeometry } from "../objects/geometries";
 import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 import { colorOf } from "./styles";
 
 const SEGMENTS = 16;
 
-/** rviz_default_plugins/PointStamped: balls where the points were; what RViz calls their radius it draws as their size. */
+/** rviz_default_plugins/PointStamped: spheres at the points; like RViz, this uses the property Radius as a diameter. */
 export class PointStampedDrawing extends ContentDrawing<"point_marks"> {
-  private readonly balls = new CopyBatch(this.root, ballGeometry(SEGMENTS));
+  private readonly balls = new CopyBatch(this.root, sphereGeometry(SEGMENTS));
 
   constructor(context: DrawingContext) {
     super(context, "point_marks");
@@ -19,7 +19,7 @@ export class PointStampedDrawing extends ContentDrawing<"point_marks"> {
     this.balls.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { points: this.balls.size };
   }
 

@@ -18,7 +18,7 @@ export class PolygonDrawing extends ContentDrawing<"polygon_line"> {
     this.lines.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { corners: this.corners };
   }
 

@@ -7,7 +7,7 @@ import type { DrawingContext } from "./drawing";
 import { flatArrows } from "./flat-arrows";
 import { colorOf, poseAt } from "./styles";
 
-/** Thousands of poses are particles: few corners will do. */
+/** A low number of segments, because thousands of poses are particles. */
 const SEGMENTS = 8;
 
 /** rviz_default_plugins/PoseArray */
@@ -25,7 +25,7 @@ export class PoseArrayDrawing extends ContentDrawing<"pose_marks"> {
     for (const part of [this.lines, this.arrows, this.axes]) part.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { arrows: this.arrows.size, axes: this.axes.size };
   }
 

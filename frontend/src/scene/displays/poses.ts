@@ -4,12 +4,12 @@ import { describedNumbers } from "../described-pose";
 import { ArrowBatch } from "../objects/arrow-batch";
 import { AxesBatch } from "../objects/axes-batch";
 import { CovarianceBatch } from "../objects/covariance-batch";
-import type { Described, Hit, SelectionBox } from "../picking";
+import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import { ContentDrawing, type Placed } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 import { colorOf, covarianceStyle, poseArrow, poseAt } from "./styles";
 
-/** rviz_default_plugins/Pose, PoseWithCovariance and Odometry: poses as arrows or axes, and how uncertain they are. */
+/** rviz_default_plugins/Pose, PoseWithCovariance and Odometry: poses as arrows or axes, with their covariances. */
 export class PosesDrawing extends ContentDrawing<"pose_marks"> {
   private readonly arrows = new ArrowBatch(this.root);
   private readonly axes = new AxesBatch(this.root);
@@ -28,20 +28,20 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
   }
 
   pickBox(box: SelectionBox): readonly string[] {
-    return this.drawnContents.flatMap((each) => {
-      const place = placeOf(each);
-      return box.hasPoint(place.x, place.y, place.z) ? [each.key] : [];
+    return this.drawnContents.flatMap((content) => {
+      const place = placeOf(content);
+      return box.hasPoint(place.x, place.y, place.z) ? [content.key] : [];
     });
   }
 
   placeOf(key: string): Vector3 | null {
-    const found = this.drawnContents.find((each) => each.key === key);
+    const found = this.drawnContents.find((content) => content.key === key);
     return found ? placeOf(found) : null;
   }
 
-  /** A pose as RViz's Selection panel shows it: in the frame it was given in. */
-  describe(key: string): Described | null {
-    const found = this.drawnContents.find((each) => each.key === key);
+  /** Returns a pose as in RViz's Selection panel: in the frame of its message. */
+  describe(key: string): DescriptionRow | null {
+    const found = this.drawnContents.find((content) => content.key === key);
     if (!found) return null;
     const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 0] = found.content.poses;
     const children = [
@@ -62,7 +62,7 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
     for (const batch of [this.arrows, this.axes, this.covariances]) batch.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { arrows: this.arrows.size, axes: this.axes.size };
   }
 
@@ -72,7 +72,7 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
 
   protected arrange(): void {
     const { rows } = this.context.display;
-    // Odometry has the sizes below Shape.
+    // In Odometry, the sizes are below Shape.
     const below = rows.find("Shape")?.children.length ? ["Shape"] : [];
     const asArrows = rows.text("Arrow", "Shape") === "Arrow";
     const shape = poseArrow(rows, below);
@@ -102,7 +102,7 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
   }
 }
 
-/** The position of the one pose of a content. */
+/** Returns the position of the single pose of a content. */
 function placeOf({ content, pose }: Placed<PoseMarks>): Vector3 {
   return new Vector3().setFromMatrixPosition(poseAt(content.poses, 0, new Matrix4()).premultiply(pose));
 }

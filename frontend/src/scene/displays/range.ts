@@ -7,7 +7,7 @@ import { colorOf } from "./styles";
 
 const SEGMENTS = 32;
 
-/** rviz_default_plugins/Range: cones with their tip at the sensor. */
+/** rviz_default_plugins/Range: cones with their apex at the sensor. */
 export class RangeDrawing extends ContentDrawing<"range_cone"> {
   private readonly cones = new CopyBatch(this.root, coneGeometry(SEGMENTS));
 
@@ -19,7 +19,7 @@ export class RangeDrawing extends ContentDrawing<"range_cone"> {
     this.cones.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { cones: this.cones.size };
   }
 
@@ -38,7 +38,7 @@ export class RangeDrawing extends ContentDrawing<"range_cone"> {
       const { range, field_of_view } = content;
       if (range <= 0) continue;
       const width = 2 * range * Math.tan(field_of_view / 2);
-      // The batch's cone has its base at the origin and its tip along x: turned round, the tip is at the sensor.
+      // The batch's cone has its base at the origin and its apex along x: turn it so that the apex is at the sensor.
       shape.makeTranslation(range, 0, 0).multiply(size.makeScale(-range, -width, width));
       this.cones.add(shape.premultiply(pose), 0, alpha, color);
     }

@@ -24,7 +24,7 @@ import { ScrewDrawing } from "./screw";
 import { TfDrawing } from "./tf";
 import { WorldDrawing } from "./world";
 
-/** The display classes this page draws, by RViz's names. A new display is one line here and one class. */
+/** The display classes that this page draws, by RViz's names. A new display needs one line here and one class. */
 export const DRAWINGS: ReadonlyMap<string, DrawingClass> = new Map<string, DrawingClass>([
   ["rviz_default_plugins/Axes", AxesDrawing],
   ["rviz_default_plugins/Grid", GridDrawing],

@@ -5,14 +5,14 @@ import type { MovingView } from "../robot/moving-meshes";
 import type { Displacement } from "../robot/link-drawing";
 import { RobotDrawing } from "../robot/robot-drawing";
 import type { Lighting } from "../light";
-import { shade } from "../studio-light";
-import type { Described, Hit, SelectionBox } from "../picking";
+import { setShadowed } from "../studio-light";
+import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import type { Drawing, DrawingContext } from "./drawing";
 
-/** A new robot replaces the old one when its meshes are loaded, or after this long without them. */
+/** A new robot replaces the old one once its meshes are loaded, or after this time without them. */
 const SWAP_WITHIN_MS = 300;
-/** Links that are nearer to each other than this are in one place: m, and parts of quaternions. */
-const ONE_PLACE = 1e-4;
+/** Links closer than this count as coincident: m, and components of quaternions. */
+const COINCIDENCE = 1e-4;
 
 /** rviz_default_plugins/RobotModel */
 export class RobotModelDrawing implements Drawing {
@@ -21,50 +21,52 @@ export class RobotModelDrawing implements Drawing {
   private next: RobotDrawing | null = null;
   private robotsShown = 0;
   private lighting: Lighting = "Camera";
-  private styleIsOld = true;
+  private isStyleStale = true;
   private contrast: boolean;
   private displaced: Displacement | null = null;
-  private readonly forget: readonly (() => void)[];
+  private readonly unsubscribe: readonly (() => void)[];
 
   constructor(private readonly context: DrawingContext) {
     const { session, display } = context;
     this.root.matrixAutoUpdate = false;
-    const take = (robot: RobotScene | undefined): void => {
-      if (robot?.display === display.id) this.take(robot);
+    const setRobot = (robot: RobotScene | undefined): void => {
+      if (robot?.display === display.id) this.setRobot(robot);
     };
     this.contrast = session.inspect.current.contrast;
-    this.forget = [session.robotChanged.on(take), session.inspect.changed.on(() => this.inspectChanged()), session.comparison.changed.on(() => this.recolor())];
-    take(session.robots.get(display.id));
+    this.unsubscribe = [session.robotChanged.on(setRobot), session.inspect.changed.on(() => this.inspectChanged()), session.comparison.changed.on(() => this.recolor())];
+    setRobot(session.robots.get(display.id));
   }
 
-  /** Visuals drawn now. */
+  /** The number of visuals drawn now. */
   get visualsDrawn(): number {
     return this.root.visible ? (this.shown?.visualsDrawn ?? 0) : 0;
   }
 
-  /** Whether something of it has a place: a link with visuals, or any link if no link has visuals. */
-  get isInPlace(): boolean {
-    return this.shown?.isInPlace ?? false;
+  /** Whether the robot has a pose: any link with visuals, or any link if no link has visuals. */
+  get hasPose(): boolean {
+    return this.shown?.hasPose ?? false;
   }
 
-  /** Links that have a place. */
+  /** The number of links with a pose. */
   get linkCount(): number {
     return this.shown?.linkCount ?? 0;
   }
 
-  /** A key of the parts of the robot that are seen; empty while there is none, or no transform of it. */
-  get seen(): string {
+  /** A key of the visible parts of the robot; empty while no robot or no transform is known. */
+  get visibleKey(): string {
     const { posed, loading } = this.shown?.progress ?? { posed: 0, loading: 0 };
     const isPlain = this.visualsDrawn === 0 && loading > 0;
     return posed === 0 || isPlain ? "" : [this.robotsShown, posed, loading].join();
   }
 
-  /** The box around what is seen, in the fixed frame, m; around the links' origins where nothing is. */
+  /**
+   * Returns the bounding box of the visible parts in the fixed frame, m; of the links' origins if nothing is visible.
+   */
   bounds(): Box3 {
     return this.shown?.bounds() ?? new Box3();
   }
 
-  /** The height of the ground under it, in the fixed frame, m. */
+  /** Returns the height of the ground below the robot in the fixed frame, m. */
   ground(): number {
     return this.shown?.ground() ?? 0;
   }
@@ -78,13 +80,13 @@ export class RobotModelDrawing implements Drawing {
     return this.root.visible ? (this.shown?.visibleMeshes ?? []) : [];
   }
 
-  /** What shines on it; a studio does with shadows. */
+  /** The lighting of the robot; Studio has shadows. */
   set light(lighting: Lighting) {
-    this.styleIsOld ||= lighting !== this.lighting;
+    this.isStyleStale ||= lighting !== this.lighting;
     this.lighting = lighting;
   }
 
-  /** Draws a part elsewhere than the description has it; null for nothing. */
+  /** Draws a part at another pose than that of the description; null restores it. */
   displace(displaced: Displacement | null): void {
     this.displaced = displaced;
     this.shown?.displaceShape(displaced?.shape ?? null);
@@ -92,28 +94,28 @@ export class RobotModelDrawing implements Drawing {
   }
 
   propertiesChanged(): void {
-    this.styleIsOld = true;
+    this.isStyleStale = true;
   }
 
   update(): void {
-    if (this.styleIsOld && this.shown) {
+    if (this.isStyleStale && this.shown) {
       const { display, session } = this.context;
-      this.shown.style(display.rows, this.contrast, this.lighting, (link) => session.comparison.instead(display.id, link));
-      shade(this.shown.root, this.lighting === "Studio" && !session.comparison.isOld(display.id));
+      this.shown.style(display.rows, this.contrast, this.lighting, (link) => session.comparison.overrideOf(display.id, link));
+      setShadowed(this.shown.root, this.lighting === "Studio" && !session.comparison.isOld(display.id));
     }
-    this.styleIsOld = false;
+    this.isStyleStale = false;
     const { frames } = this.context.session;
     const find = (link: LinkScene, matrix: Matrix4): boolean => {
       const found = framePose(frames, frames.row(link.frame), matrix);
       if (found) this.displaced?.link?.(link.name, matrix);
       return found;
     };
-    this.shown?.place(find, this.covered());
-    this.shown?.look(this.context.camera());
+    this.shown?.place(find, this.hiddenDuplicates());
+    this.shown?.chooseDetail(this.context.camera());
   }
 
-  move(view: MovingView | null): void {
-    this.shown?.move(view);
+  simplify(view: MovingView | null): void {
+    this.shown?.simplify(view);
   }
 
   settled(): boolean {
@@ -128,15 +130,15 @@ export class RobotModelDrawing implements Drawing {
     return this.shown?.pickBox(box) ?? [];
   }
 
-  describe(link: string): Described | null {
+  describe(link: string): DescriptionRow | null {
     return this.shown?.describe(link) ?? null;
   }
 
   inspect(): object {
-    return this.shown?.tell() ?? {};
+    return this.shown?.inspect() ?? {};
   }
 
-  /** A link that draws nothing is where its frame is. */
+  /** Returns the origin of a link's frame, for links without visuals. */
   placeOf(name: string): Vector3 | null {
     const { session, display } = this.context;
     const link = session.robots.get(display.id)?.links.find((each) => each.name === name);
@@ -150,16 +152,16 @@ export class RobotModelDrawing implements Drawing {
   }
 
   dispose(): void {
-    for (const forget of this.forget) forget();
+    for (const forget of this.unsubscribe) forget();
     this.next?.dispose();
     this.shown?.dispose();
   }
 
   /**
-   * A predicate of the links of an old description that are not drawn: they look as in the new one, and have the same
-   * pose.
+   * Returns a predicate for the links of an old description that are not drawn, because they look the same in the new
+   * one and have the same pose.
    */
-  private covered(): ((link: LinkScene) => boolean) | undefined {
+  private hiddenDuplicates(): ((link: LinkScene) => boolean) | undefined {
     const { display, session } = this.context;
     const { comparison, displays, frames, robots } = session;
     const other = comparison.isOld(display.id) ? (comparison.compared?.new.display ?? "") : "";
@@ -167,12 +169,12 @@ export class RobotModelDrawing implements Drawing {
     const frameOf = new Map(robots.get(other)?.links.map(({ name, frame }) => [name, frame]));
     return ({ name, frame }) => {
       const twin = comparison.twinOf(display.id, name);
-      return twin !== undefined && frames.apart(frame, frameOf.get(twin) ?? "") < ONE_PLACE;
+      return twin !== undefined && frames.difference(frame, frameOf.get(twin) ?? "") < COINCIDENCE;
     };
   }
 
   private recolor(): void {
-    this.styleIsOld = true;
+    this.isStyleStale = true;
     this.context.invalidate();
   }
 
@@ -180,11 +182,11 @@ export class RobotModelDrawing implements Drawing {
     const { contrast } = this.context.session.inspect.current;
     if (contrast === this.contrast) return;
     this.contrast = contrast;
-    this.styleIsOld = true;
+    this.isStyleStale = true;
     this.context.invalidate();
   }
 
-  private take(scene: RobotScene): void {
+  private setRobot(scene: RobotScene): void {
     const { session, display, meshes, invalidate } = this.context;
     this.next?.dispose();
     const robot = new RobotDrawing(
@@ -194,7 +196,7 @@ export class RobotModelDrawing implements Drawing {
         session.connection.send({ type: "mesh_status", display: display.id, link, url, error });
       },
       () => {
-        this.styleIsOld = true;
+        this.isStyleStale = true;
         invalidate();
       },
     );
@@ -215,7 +217,7 @@ export class RobotModelDrawing implements Drawing {
     this.robotsShown += 1;
     this.next = null;
     this.root.add(robot.root);
-    this.styleIsOld = true;
+    this.isStyleStale = true;
     this.update();
     this.context.invalidate();
   }

@@ -5,14 +5,17 @@ import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 import { colorOf } from "./styles";
 
-/** RViz's arrow of one metre and unit width, in which it draws vectors scaled to their length. */
+/** RViz's arrow of unit length and width, which is scaled to draw vectors. */
 const ARROW = { shaftLength: 1, shaftDiameter: 0.1, headLength: 0.3, headDiameter: 0.2 };
-/** The circle about an angular vector: parts of 32, open where its arrow head is. */
+/** The circle around an angular vector, in parts of 32; the gap holds its arrow head. */
 const CIRCLE = { from: 4, to: 32, parts: 32 };
 const CIRCLE_WIDTH = 0.05;
 const CIRCLE_HEAD = 0.1;
 
-/** rviz_default_plugins/TwistStamped, AccelStamped and Wrench: an arrow for each vector, and a circle for the angular. */
+/**
+ * rviz_default_plugins/TwistStamped, AccelStamped and Wrench: an arrow for each vector, and a circle around the angular
+ * one.
+ */
 export class ScrewDrawing extends ContentDrawing<"screw"> {
   private readonly arrows = new ArrowBatch(this.root);
   private readonly circles = new WideLines();
@@ -27,7 +30,7 @@ export class ScrewDrawing extends ContentDrawing<"screw"> {
     this.circles.dispose();
   }
 
-  protected override told(): object {
+  protected override drawnState(): object {
     return { arrows: this.arrows.size };
   }
 
@@ -67,9 +70,9 @@ export class ScrewDrawing extends ContentDrawing<"screw"> {
     this.arrows.add(matrix.multiply(new Matrix4().makeScale(length, width, width)), ARROW, look);
   }
 
-  /** The points of a circle about the middle of the vector; its arrow head is added to the arrows. */
+  /** Returns the points of a circle around the middle of the vector, and adds its arrow head to the arrows. */
   private addCircle(pose: Matrix4, direction: Vector3, length: number, width: number, look: Look): Float32Array {
-    // The vector is x here, so that the circle turns from y to z.
+    // The vector is along x here, so that the circle turns from y to z.
     const matrix = alongX(new Vector3(), direction, new Matrix4()).premultiply(pose);
     const radius = length / 4;
     const point = new Vector3();

@@ -3,14 +3,14 @@ import type { PropertyRows } from "../../state/properties";
 import type { ArrowShape } from "../objects/arrow-batch";
 import type { CovarianceStyle } from "../objects/covariance-batch";
 
-/** Properties that several displays have, read into what the drawing objects take. */
+/** Reads properties that several displays share into the parameters of drawing objects. */
 
-/** A colour row as 0xrrggbb. */
+/** Returns a colour property as 0xrrggbb. */
 export function colorOf(rows: PropertyRows, fallback: string, ...path: string[]): number {
   return new Color(rows.text(fallback, ...path)).getHex();
 }
 
-/** The arrow of Pose, PoseWithCovariance and Odometry; what RViz calls radius is a thickness, see `axesGeometry`. */
+/** Returns the arrow of Pose, PoseWithCovariance and Odometry; RViz's radius is a thickness, see `axesGeometry`. */
 export function poseArrow(rows: PropertyRows, below: readonly string[]): ArrowShape {
   return {
     shaftLength: rows.number(1, ...below, "Shaft Length"),
@@ -20,7 +20,7 @@ export function poseArrow(rows: PropertyRows, below: readonly string[]): ArrowSh
   };
 }
 
-/** The Covariance property; null when it is off or the display has none. */
+/** Returns the style of the Covariance property; null if it is off or the display has none. */
 export function covarianceStyle(rows: PropertyRows): CovarianceStyle | null {
   if (!rows.bool(false, "Covariance")) return null;
   const top = (name: string): string[] => ["Covariance", name];
@@ -45,7 +45,10 @@ const position = new Vector3();
 const orientation = new Quaternion();
 const ONE = new Vector3(1, 1, 1);
 
-/** Pose number `i` of many (x y z qx qy qz qw each), in the frame they are given in. A quaternion of zeros does not rotate. */
+/**
+ * Computes the `i`-th of several poses (x y z qx qy qz qw each), in their own frame. A zero quaternion means no
+ * rotation.
+ */
 export function poseAt(poses: Float32Array, i: number, matrix: Matrix4): Matrix4 {
   position.fromArray(poses, i * 7);
   orientation.fromArray(poses, i * 7 + 3).normalize();

@@ -2,7 +2,7 @@ import { Box3, Group, Matrix4, Vector3, type Raycaster } from "three";
 import { describedPose } from "../described-pose";
 import { alongX } from "../objects/arrow-batch";
 import { LabelBatch } from "../objects/label-batch";
-import type { Described, Hit, SelectionBox } from "../picking";
+import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import { framePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 import { fadeForAge, type Fade } from "./fade";
@@ -14,40 +14,40 @@ const SHAFT_COLOR = 0xcccc4d;
 const HEAD_COLOR = 0xff1a99;
 const HEAD_LENGTH = 0.1;
 const NAME_HEIGHT = 0.1;
-/** A frame this close to its parent gets no arrow, m. */
-const SHORTEST_ARROW = 0.001;
-/** Steps in which fading is drawn: a new frame for each, none in between. */
+/** A frame closer to its parent than this gets no arrow, m. */
+const MIN_ARROW = 0.001;
+/** The number of steps in which fading is drawn, so that frames are requested only at steps. */
 const FADE_STEPS = 32;
 
-/** From this many frames on they are drawn with fewer corners. */
+/** From this number of frames on, axes and arrows have fewer segments. */
 const MANY_FRAMES = 120;
 const FINE_SEGMENTS = 12;
 const COARSE_SEGMENTS = 5;
 
-/** rviz_default_plugins/TF: axes, arrows to the parents and names of all frames, each kind in one draw call. */
+/** rviz_default_plugins/TF: axes, arrows to parents and names of all frames, each kind in one draw call. */
 export class TfDrawing implements Drawing {
   readonly root = new Group();
   private readonly markers = new FrameMarkers(this.root, FINE_SEGMENTS);
   private readonly names = new LabelBatch();
-  private readonly forget: (() => void)[];
-  /** The frames that the server's filters leave and whose boxes are on. */
-  private wanted = new Set<string>();
-  private ageing = "";
-  private named = 0;
-  /** The frames that have axes, in the order of the copies. */
+  private readonly unsubscribe: (() => void)[];
+  /** The frames that pass the server's filters and whose boxes are ticked. */
+  private enabledFrames = new Set<string>();
+  private drawnAgeKey = "";
+  private nameCount = 0;
+  /** The frames that have axes, in the order of the copies in the batch. */
   private withAxes: string[] = [];
 
   constructor(private readonly context: DrawingContext) {
     this.root.add(this.names.root);
     const { frames } = context.session;
-    this.forget = [frames.agesChanged.on(() => this.agesChanged())];
+    this.unsubscribe = [frames.agesChanged.on(() => this.agesChanged())];
     this.propertiesChanged();
   }
 
   propertiesChanged(): void {
     const { rows } = this.context.display;
     const frames = rows.find("Frames")?.children ?? [];
-    this.wanted = new Set(frames.filter((row) => row.value === true).map((row) => row.name));
+    this.enabledFrames = new Set(frames.filter((row) => row.value === true).map((row) => row.name));
   }
 
   update(): void {
@@ -62,7 +62,7 @@ export class TfDrawing implements Drawing {
     this.markers.refine(visible.length > MANY_FRAMES ? COARSE_SEGMENTS : FINE_SEGMENTS);
     const { axes } = this.markers;
     axes.begin(visible.length);
-    this.named = 0;
+    this.nameCount = 0;
     this.withAxes = [];
     this.names.begin(showNames ? visible.reduce((sum, [row]) => sum + (frames.names[row]?.length ?? 0), 0) : 0);
     for (const [row, fade] of visible) {
@@ -72,7 +72,7 @@ export class TfDrawing implements Drawing {
         this.withAxes.push(frames.names[row] ?? "");
       }
       if (!showNames) continue;
-      this.named += 1;
+      this.nameCount += 1;
       this.names.add(
         frames.names[row] ?? "",
         at.setFromMatrixPosition(pose),
@@ -84,10 +84,10 @@ export class TfDrawing implements Drawing {
     axes.end();
     this.names.end();
     this.drawArrows(rows.bool(true, "Show Arrows") ? visible : [], scale);
-    this.ageing = this.ageKey();
+    this.drawnAgeKey = this.ageKey();
   }
 
-  /** Frames are taken by their axes, as in RViz. */
+  /** Picks frames by their axes, as in RViz. */
   pick(ray: Raycaster): Hit | null {
     const hit = this.markers.axes.pick(ray);
     const key = hit && this.withAxes[hit.copy];
@@ -107,8 +107,8 @@ export class TfDrawing implements Drawing {
     return framePose(frames, frames.row(name), pose) ? new Vector3().setFromMatrixPosition(pose) : null;
   }
 
-  /** A frame as RViz's Selection panel shows it. */
-  describe(name: string): Described | null {
+  /** Returns a frame as RViz's Selection panel shows it. */
+  describe(name: string): DescriptionRow | null {
     const { frames } = this.context.session;
     const row = frames.row(name);
     const pose = new Matrix4();
@@ -117,18 +117,18 @@ export class TfDrawing implements Drawing {
     return { name: `Frame ${name}`, children: [{ name: "Parent", value: parent }, ...describedPose(pose)] };
   }
 
-  /** The number of axes, names and arrows drawn, and their bounds in the fixed frame. */
+  /** Returns the number of axes, names and arrows drawn, and their bounds in the fixed frame. */
   inspect(): object {
     const box = new Box3();
     this.markers.axes.expandBox(box);
     this.markers.arrows.expandBox(box);
     const bounds = box.isEmpty() ? null : { min: box.min.toArray(), max: box.max.toArray() };
     const { axes, arrows } = this.markers;
-    return { axes: axes.size, arrows: arrows.size, names: this.named, bounds };
+    return { axes: axes.size, arrows: arrows.size, names: this.nameCount, bounds };
   }
 
   dispose(): void {
-    for (const forget of this.forget) forget();
+    for (const forget of this.unsubscribe) forget();
     this.markers.dispose();
     this.names.dispose();
   }
@@ -145,7 +145,7 @@ export class TfDrawing implements Drawing {
       from.fromArray(frames.poses, row * 7);
       along.fromArray(frames.poses, parent * 7).sub(from);
       const distance = along.length();
-      if (distance < SHORTEST_ARROW) continue;
+      if (distance < MIN_ARROW) continue;
       const headLength = distance < HEAD_LENGTH * scale ? HEAD_LENGTH * scale * distance : HEAD_LENGTH * scale;
       const shape = {
         shaftLength: distance - headLength,
@@ -163,16 +163,16 @@ export class TfDrawing implements Drawing {
     const timeout = this.context.display.rows.number(15, "Frame Timeout");
     const result: (readonly [number, Fade])[] = [];
     frames.names.forEach((name, row) => {
-      if (!frames.has(row) || !this.wanted.has(name)) return;
+      if (!frames.has(row) || !this.enabledFrames.has(name)) return;
       const fade = fadeForAge(frames.ages[row] ?? 0, timeout);
       if (fade.alpha > 0) result.push([row, fade]);
     });
     return result;
   }
 
-  /** Only frames that look another age ask for a drawing. */
+  /** Requests a frame only if the fading of some frame changed by a step. */
   private agesChanged(): void {
-    if (this.context.display.enabled && this.ageKey() !== this.ageing) this.context.invalidate();
+    if (this.context.display.enabled && this.ageKey() !== this.drawnAgeKey) this.context.invalidate();
   }
 
   private ageKey(): string {

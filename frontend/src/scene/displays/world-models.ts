@@ -2,16 +2,16 @@ import type { Matrix4 } from "three";
 
 const NUMBERS = 7;
 
-/** The model of the world that a link, `model::link`, is of. */
+/** Returns the model of the world to which a link, `model::link`, belongs. */
 export function modelOf(link: string): string {
   return link.split("::", 1)[0] ?? link;
 }
 
-/** Models that are shown elsewhere than their poses say. */
+/** Models that are shown away from their actual poses, while the user moves them. */
 export class Displacement {
   private models: ReadonlyMap<string, Matrix4> = new Map();
 
-  /** The matrix that premultiplies the poses of each model, in the world. */
+  /** Sets the matrices that premultiply the models' poses in the world. */
   set(models: ReadonlyMap<string, Matrix4>): void {
     this.models = models;
   }
@@ -21,8 +21,8 @@ export class Displacement {
     return moved ? pose.premultiply(moved) : pose;
   }
 
-  /** Ends when the models' own poses are others than before. */
-  compare(before: Float32Array, after: Float32Array, rowOf: ReadonlyMap<string, number>): void {
+  /** Ends the displacement once the actual poses of these models have changed. */
+  endIfMoved(before: Float32Array, after: Float32Array, rowOf: ReadonlyMap<string, number>): void {
     if (this.models.size === 0) return;
     for (const [link, row] of rowOf) {
       if (!this.models.has(modelOf(link))) continue;

@@ -5,19 +5,21 @@ import { ThinLines } from "../objects/thin-lines";
 
 type Color = readonly [number, number, number, number];
 
-/** Rays where they begin, close together; where they hit something; and those that do not. r g b a from 0 to 1. */
+/**
+ * Colours (r g b a, 0 to 1) of rays: at the sensor, where rays are dense; at a hit; at the end of a ray without a hit.
+ */
 const BEGIN: Color = [0.25, 0.6, 1, 0.12];
 const HIT: Color = [0.25, 0.6, 1, 0.6];
 const MISS: Color = [0.25, 0.6, 1, 0.1];
-/** The edges of a camera's field of view, those between the planes near the camera, and far away. */
+/** The colours of a camera's frustum: of its edges near the camera, and of those far away. */
 const FRUSTUM: Color = [1, 0.75, 0.3, 0.9];
-const FAR_OFF: Color = [1, 0.75, 0.3, 0.35];
-/** m. */
-const NEAR_BY = 1;
+const FRUSTUM_FAR: Color = [1, 0.75, 0.3, 0.35];
+/** The distance from which on the frustum's edges are drawn fainter, m. */
+const NEAR_LENGTH = 1;
 
-/** The objects in the frame of a sensor, where its link is. */
-interface Mark {
-  readonly said: LidarScene | CameraScene;
+/** The lines of a sensor, with the pose of the sensor in its link. */
+interface SensorMark {
+  readonly sensor: LidarScene | CameraScene;
   readonly local: Matrix4;
   readonly lines: ThinLines;
 }
@@ -25,56 +27,56 @@ interface Mark {
 /** The rays of the lidars of a world and the frustums of its cameras. */
 export class WorldSensors {
   readonly root = new Group();
-  private lidars = new Map<string, Mark & { said: LidarScene }>();
-  private cameras: Mark[] = [];
+  private lidars = new Map<string, SensorMark & { readonly sensor: LidarScene }>();
+  private cameras: SensorMark[] = [];
 
   constructor() {
     this.root.matrixAutoUpdate = false;
   }
 
-  take(scene: WorldScene): void {
+  setScene(scene: WorldScene): void {
     this.dispose();
-    for (const said of scene.lidars) this.lidars.set(said.name, { ...this.mark(said), said });
-    this.cameras = scene.cameras.map((said) => {
-      const mark = this.mark(said);
-      mark.lines.setSegments(...frustumOf(said));
+    for (const sensor of scene.lidars) this.lidars.set(sensor.name, { ...this.mark(sensor), sensor });
+    this.cameras = scene.cameras.map((sensor) => {
+      const mark = this.mark(sensor);
+      mark.lines.setSegments(...frustumOf(sensor));
       return mark;
     });
   }
 
-  measured({ lidar, ranges }: WorldRays): void {
+  setRanges({ lidar, ranges }: WorldRays): void {
     const mark = this.lidars.get(lidar);
-    if (!mark || ranges.length !== mark.said.horizontal.count * mark.said.vertical.count) return;
-    mark.lines.setSegments(...raysOf(mark.said, ranges));
+    if (!mark || ranges.length !== mark.sensor.horizontal.count * mark.sensor.vertical.count) return;
+    mark.lines.setSegments(...raysOf(mark.sensor, ranges));
   }
 
-  /** The rays of a lidar are to be drawn no more. */
+  /** Removes the rays of a lidar. */
   forget(lidar: string): void {
     this.lidars.get(lidar)?.lines.setSegments(new Float32Array(0));
   }
 
-  /** Draws only those that the display's properties choose. */
+  /** Shows only the sensors that the display's properties select. */
   style(rows: PropertyRows): void {
     const [rays, frustums] = [rows.text("Visualized", "Lidar Rays"), rows.text("Visualized", "Camera Frustums")];
-    for (const { said, lines } of this.lidars.values()) lines.shown = isChosen(rays, said);
-    for (const { said, lines } of this.cameras) lines.shown = isChosen(frustums, said);
+    for (const { sensor, lines } of this.lidars.values()) lines.shown = isChosen(rays, sensor);
+    for (const { sensor, lines } of this.cameras) lines.shown = isChosen(frustums, sensor);
   }
 
-  /** Puts each where its link is in the fixed frame. */
+  /** Moves the lines to the poses of their links in the fixed frame. */
   place(poseOf: (link: string) => Matrix4 | null): void {
-    for (const { said, local, lines } of [...this.lidars.values(), ...this.cameras]) {
+    for (const { sensor, local, lines } of [...this.lidars.values(), ...this.cameras]) {
       if (!lines.root.visible) continue;
-      const pose = poseOf(said.link);
+      const pose = poseOf(sensor.link);
       if (pose) lines.root.matrix.multiplyMatrices(pose, local);
     }
   }
 
-  /** What is drawn, for tests: of each lidar how many rays, and the cameras. */
-  tell(): object {
-    const drawn = ({ lines }: Mark): boolean => lines.root.visible;
+  /** Returns what is drawn, for tests: the number of rays of each lidar, and the cameras. */
+  inspect(): object {
+    const drawn = ({ lines }: SensorMark): boolean => lines.root.visible;
     const rays: Record<string, number> = {};
-    for (const mark of this.lidars.values()) if (drawn(mark)) rays[mark.said.name] = mark.lines.count;
-    return { rays, frustums: this.cameras.filter(drawn).map(({ said }) => said.name) };
+    for (const mark of this.lidars.values()) if (drawn(mark)) rays[mark.sensor.name] = mark.lines.count;
+    return { rays, frustums: this.cameras.filter(drawn).map(({ sensor }) => sensor.name) };
   }
 
   dispose(): void {
@@ -83,16 +85,16 @@ export class WorldSensors {
     this.cameras = [];
   }
 
-  private mark(said: LidarScene | CameraScene): Mark {
+  private mark(sensor: LidarScene | CameraScene): SensorMark {
     const local = new Matrix4().compose(
-      new Vector3().fromArray(said.position),
-      new Quaternion().fromArray(said.quaternion),
+      new Vector3().fromArray(sensor.position),
+      new Quaternion().fromArray(sensor.quaternion),
       new Vector3(1, 1, 1),
     );
     const lines = new ThinLines();
     lines.root.matrixAutoUpdate = false;
     this.root.add(lines.root);
-    return { said, local, lines };
+    return { sensor, local, lines };
   }
 }
 
@@ -100,7 +102,7 @@ function isChosen(choice: string, { visualized }: LidarScene | CameraScene): boo
   return choice === "All" || (choice === "Visualized" && visualized);
 }
 
-/** Segments and colours of rays, from the nearest distance that is measured to what they met, or the farthest. */
+/** Returns segments and colours of rays, from the minimum range to the hit, or to the maximum range. */
 function raysOf({ horizontal, vertical, nearest, farthest }: LidarScene, ranges: Float32Array): [Float32Array, Float32Array] {
   const segments = new Float32Array(ranges.length * 6);
   const colors = new Float32Array(ranges.length * 8);
@@ -120,7 +122,9 @@ function raysOf({ horizontal, vertical, nearest, farthest }: LidarScene, ranges:
   return [segments, colors];
 }
 
-/** Segments and colours of a camera's field of view: the near and the far plane, and the edges from its optical centre. */
+/**
+ * Returns segments and colours of a camera's frustum: the near and far planes, and the edges from the optical centre.
+ */
 function frustumOf({ left, right, up, down, near, far }: CameraScene): [Float32Array, Float32Array] {
   const segments: number[] = [];
   const colors: number[] = [];
@@ -132,12 +136,12 @@ function frustumOf({ left, right, up, down, near, far }: CameraScene): [Float32A
   let [beforeY, beforeZ] = corners[3];
   for (const [y, z] of corners) {
     const at = (x: number): number[] => [x, x * y, x * z];
-    let reached = Math.min(Math.max(NEAR_BY, near), far);
+    let reached = Math.min(Math.max(NEAR_LENGTH, near), far);
     line([0, 0, 0], at(reached), FRUSTUM);
-    // In pieces: where the processor draws, a line that goes far behind who looks is not drawn at all.
-    for (; reached < far; reached *= 2) line(at(reached), at(Math.min(2 * reached, far)), FAR_OFF);
+    // Split the line: software renderers drop a line that extends far behind the viewer.
+    for (; reached < far; reached *= 2) line(at(reached), at(Math.min(2 * reached, far)), FRUSTUM_FAR);
     line(at(near), [near, near * beforeY, near * beforeZ], FRUSTUM);
-    line(at(far), [far, far * beforeY, far * beforeZ], FAR_OFF);
+    line(at(far), [far, far * beforeY, far * beforeZ], FRUSTUM_FAR);
     [beforeY, beforeZ] = [y, z];
   }
   return [new Float32Array(segments), new Float32Array(colors)];

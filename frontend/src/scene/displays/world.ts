@@ -1,7 +1,7 @@
 import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "three";
 import type { DisplayData } from "../../connection/data";
 import type { WorldPoses, WorldScene } from "../../protocol";
-import type { Described, Hit, SelectionBox } from "../picking";
+import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import { dataPose, poseMatrix } from "../pose";
 import type { MovingView } from "../robot/moving-meshes";
 import { RobotDrawing } from "../robot/robot-drawing";
@@ -13,13 +13,13 @@ import { freePlace } from "./free-place";
 import { Displacement, modelOf } from "./world-models";
 import { WorldSensors } from "./world-sensors";
 
-/** Begins the keys of the rays of lidars. */
+/** The prefix of the keys of lidar rays. */
 const RAYS = "rays ";
 
-/** What is so much flatter than it is wide is a ground, as a rule. */
-const FLAT = 0.02;
-/** What is so much lower than the ground has fallen out of the world, m. */
-const FALLEN = -1;
+/** A box flatter than this share of its width is taken for a ground. */
+const GROUND_FLATNESS = 0.02;
+/** An object this far below the ground has fallen out of the world, m. */
+const FALLEN_Z = -1;
 
 /** linkwright/World: the links of all models of a simulated world. */
 export class WorldDrawing implements Drawing {
@@ -29,11 +29,11 @@ export class WorldDrawing implements Drawing {
   private placed: { data: DisplayData; content: WorldPoses } | null = null;
   private rowOf = new Map<string, number>();
   private readonly displacement = new Displacement();
-  private styleIsOld = true;
-  private poseIsOld = true;
-  /** The last computed box around all visible things, and that around the origins of links as well. */
-  private seen = new Box3();
-  private reached = new Box3();
+  private isStyleStale = true;
+  private isPoseStale = true;
+  /** The last bounding box of everything visible, and that box extended to the origins of all links. */
+  private visibleBox = new Box3();
+  private shadowBox = new Box3();
   private readonly lights: WorldLights;
   private readonly sensors = new WorldSensors();
 
@@ -45,14 +45,14 @@ export class WorldDrawing implements Drawing {
 
   dataChanged(data: DisplayData): void {
     const { content } = data;
-    if (content.kind === "world_scene") this.take(content);
+    if (content.kind === "world_scene") this.setScene(content);
     else if (content.kind === "world_poses") {
-      if (this.placed) this.displacement.compare(this.placed.content.poses, content.poses, this.rowOf);
+      if (this.placed) this.displacement.endIfMoved(this.placed.content.poses, content.poses, this.rowOf);
       this.placed = { data, content };
-      this.poseIsOld = true;
+      this.isPoseStale = true;
     } else if (content.kind === "world_rays") {
-      this.sensors.measured(content);
-      this.poseIsOld = true;
+      this.sensors.setRanges(content);
+      this.isPoseStale = true;
     }
   }
 
@@ -67,38 +67,38 @@ export class WorldDrawing implements Drawing {
   }
 
   propertiesChanged(): void {
-    this.styleIsOld = true;
+    this.isStyleStale = true;
   }
 
   update(): void {
     const { shown, context } = this;
     if (!shown) return;
-    if (this.placed?.data.pose === null) this.poseIsOld = true; // it follows its frame
-    if (this.styleIsOld && this.scene) {
+    if (this.placed?.data.pose === null) this.isPoseStale = true; // it follows its frame
+    if (this.isStyleStale && this.scene) {
       this.lights.style(context.display.rows, this.scene);
       shown.style(context.display.rows, context.session.inspect.current.contrast, this.lights.lighting);
       this.lights.shade(shown.root);
       this.sensors.style(context.display.rows);
     }
-    if (this.styleIsOld || this.poseIsOld) {
+    if (this.isStyleStale || this.isPoseStale) {
       this.place(shown);
       this.sensors.place((link) => this.poseOf(link));
-      this.lights.place(this.world(), (link) => this.poseOf(link), () => this.shadowed(shown));
+      this.lights.place(this.world(), (link) => this.poseOf(link), () => this.boxForShadows(shown));
     }
-    this.styleIsOld = this.poseIsOld = false;
-    shown.look(context.camera());
+    this.isStyleStale = this.isPoseStale = false;
+    shown.chooseDetail(context.camera());
   }
 
-  move(view: MovingView | null): void {
-    this.shown?.move(view);
+  simplify(view: MovingView | null): void {
+    this.shown?.simplify(view);
   }
 
-  /** What lights it. */
+  /** The lighting of the world. */
   get lighting(): Lighting {
     return this.lights.lighting;
   }
 
-  /** The light in it; null while it is drawn in that of the camera. */
+  /** The world's own light; null while the camera's light is used. */
   get ownLight(): OwnLight | null {
     if (!this.scene || !this.lights.isLit) return null;
     const own = this.lights.isOfWorld;
@@ -111,9 +111,9 @@ export class WorldDrawing implements Drawing {
     };
   }
 
-  /** Whether something of it has a place. */
-  get isInPlace(): boolean {
-    return this.shown?.isInPlace ?? false;
+  /** Whether any part of the world has a pose. */
+  get hasPose(): boolean {
+    return this.shown?.hasPose ?? false;
   }
 
   settled(): boolean {
@@ -128,7 +128,10 @@ export class WorldDrawing implements Drawing {
     return (this.scene?.robots.length ?? 0) > 0;
   }
 
-  /** The boxes around the models that are robots, and around all but grounds, without what fell, in the fixed frame, m. */
+  /**
+   * Returns the bounding boxes of the robots and of everything but grounds, without what has fallen, in the fixed
+   * frame, m.
+   */
   extents(): { robots: Box3; world: Box3 } {
     const [robots, world, all] = [new Box3(), new Box3(), new Box3()];
     const names = new Set(this.scene?.robots);
@@ -136,32 +139,32 @@ export class WorldDrawing implements Drawing {
     const lowest = Math.min(0, ...boxes.map(([link, box]) => (names.has(modelOf(link)) ? 0 : box.min.z)));
     for (const [link, box] of boxes) {
       if (this.isFlat(link)) continue;
-      if (names.has(modelOf(link)) && box.max.z >= lowest + FALLEN) robots.union(box);
-      if (box.max.z < FALLEN) continue;
+      if (names.has(modelOf(link)) && box.max.z >= lowest + FALLEN_Z) robots.union(box);
+      if (box.max.z < FALLEN_Z) continue;
       if (!isLikeGround(box)) world.union(box);
       all.union(box);
     }
     return { robots, world: world.isEmpty() ? all : world };
   }
 
-  /** A free position for a model, near the robots, in the frame of the world, m. */
+  /** Returns a free position for a model, near the robots, in the frame of the world, m. */
   freePlace(): number[] {
     const { robots } = this.extents();
     const near = robots.isEmpty() ? null : robots.getCenter(new Vector3());
     const names = new Set(this.scene?.robots);
-    // Walls around the robot have a box with all of the room in it.
+    // Ignore walls around the robot: their box contains the whole room.
     const surrounds = (link: string, box: Box3): boolean => near !== null && !names.has(modelOf(link)) && box.containsPoint(near);
     const boxes = [...(this.shown?.boundsOfLinks() ?? [])].filter(([link, box]) => !box.isEmpty() && !this.isFlat(link) && !isLikeGround(box) && !surrounds(link, box));
     return freePlace(boxes.map(([, box]) => box), this.world(), near);
   }
 
-  /** The pose of the file's camera, looking along x, in the fixed frame; null where it has none. */
+  /** Returns the pose of the file's camera, which looks along x, in the fixed frame; null if the file has none. */
   cameraOfFile(): Matrix4 | null {
     const camera = this.scene?.camera;
     return camera ? poseMatrix(camera, new Matrix4()).premultiply(this.world()) : null;
   }
 
-  /** Whether a ray meets a robot, or nothing as far as it goes. */
+  /** Whether a ray hits a robot, or nothing within its range. */
   isClear(ray: Raycaster): boolean {
     const hit = this.pick(ray);
     return hit === null || (this.scene?.robots.includes(modelOf(hit.key)) ?? false);
@@ -175,7 +178,7 @@ export class WorldDrawing implements Drawing {
     return this.shown?.pickBox(box) ?? [];
   }
 
-  describe(link: string): Described | null {
+  describe(link: string): DescriptionRow | null {
     return this.shown?.describe(link) ?? null;
   }
 
@@ -187,42 +190,45 @@ export class WorldDrawing implements Drawing {
     return this.shown?.placeOf(link) ?? null;
   }
 
-  /** The pose of a link in the fixed frame; null before that is known. */
+  /** Returns the pose of a link in the fixed frame; null until it is known. */
   poseOf(link: string): Matrix4 | null {
     return this.shown?.poseOf(link) ?? null;
   }
 
-  /** The links of a model that is in the world itself. */
+  /** Returns the links of a top-level model of the world. */
   linksOf(model: string): string[] {
     return [...this.rowOf.keys()].filter((link) => modelOf(link) === model);
   }
 
-  /** Whether there is nothing of a link but planes, as of a ground. */
+  /** Whether a link consists of planes only, as a ground does. */
   isFlat(link: string): boolean {
     const row = this.rowOf.get(link);
     const visuals = (row === undefined ? null : this.scene?.links[row]?.visuals) ?? [];
     return visuals.every(({ kind }) => kind === "plane");
   }
 
-  /** Shows models moved in the world until they really are elsewhere; `models` has the matrices that premultiply their poses. */
+  /**
+   * Shows models away from their poses until their actual poses change; `models` has the matrices that premultiply the
+   * poses.
+   */
   displace(models: ReadonlyMap<string, Matrix4>): void {
     this.displacement.set(models);
-    this.poseIsOld = true;
+    this.isPoseStale = true;
     this.context.invalidate();
   }
 
-  /** A direction of the fixed frame in that of the world. */
-  toWorld(direction: Vector3): Vector3 {
+  /** Converts a direction from the fixed frame to the frame of the world. */
+  directionToWorld(direction: Vector3): Vector3 {
     const length = direction.length();
     return direction.clone().transformDirection(this.world().invert()).multiplyScalar(length);
   }
 
-  /** A point of the fixed frame in that of the world, m. */
-  placeInWorld(point: readonly number[]): number[] {
+  /** Converts a point from the fixed frame to the frame of the world, m. */
+  pointToWorld(point: readonly number[]): number[] {
     return new Vector3().fromArray(point).applyMatrix4(this.world().invert()).toArray();
   }
 
-  /** The pose of the world in the fixed frame. */
+  /** Returns the pose of the world in the fixed frame. */
   world(): Matrix4 {
     const world = new Matrix4();
     if (this.placed) dataPose(this.context.session.frames, this.placed.data, world);
@@ -230,7 +236,7 @@ export class WorldDrawing implements Drawing {
   }
 
   inspect(): object {
-    return { revision: this.scene?.revision ?? 0, ...this.shown?.tell(), light: this.lights.tell(), sensors: this.sensors.tell() };
+    return { revision: this.scene?.revision ?? 0, ...this.shown?.inspect(), light: this.lights.inspect(), sensors: this.sensors.inspect() };
   }
 
   dispose(): void {
@@ -239,15 +245,15 @@ export class WorldDrawing implements Drawing {
     this.sensors.dispose();
   }
 
-  /** The box that shadows are drawn in: all vertices are looked at only when a link has left it, and not for each pose. */
-  private shadowed(shown: RobotDrawing): Box3 {
+  /** Returns the box for shadows. It is computed from all vertices only when a link has left it, not for each pose. */
+  private boxForShadows(shown: RobotDrawing): Box3 {
     const origins = (this.scene?.links ?? []).flatMap(({ name, visuals }) => (visuals.length > 0 ? shown.placeOf(name) ?? [] : []));
-    if (this.styleIsOld || !origins.every((origin) => this.reached.containsPoint(origin))) {
-      this.seen = shown.bounds();
-      this.reached = this.seen.clone();
-      for (const origin of origins) this.reached.expandByPoint(origin);
+    if (this.isStyleStale || !origins.every((origin) => this.shadowBox.containsPoint(origin))) {
+      this.visibleBox = shown.bounds();
+      this.shadowBox = this.visibleBox.clone();
+      for (const origin of origins) this.shadowBox.expandByPoint(origin);
     }
-    return this.seen;
+    return this.visibleBox;
   }
 
   private place(shown: RobotDrawing): void {
@@ -264,7 +270,7 @@ export class WorldDrawing implements Drawing {
     });
   }
 
-  private take(scene: WorldScene): void {
+  private setScene(scene: WorldScene): void {
     const { session, display, meshes, invalidate } = this.context;
     this.shown?.dispose();
     this.scene = scene;
@@ -275,17 +281,17 @@ export class WorldDrawing implements Drawing {
       meshes,
       (link, url, error) => session.connection.send({ type: "mesh_status", display: display.id, link, url, error }),
       () => {
-        this.styleIsOld = true;
+        this.isStyleStale = true;
         invalidate();
       },
     );
     this.root.add(this.shown.root);
-    this.sensors.take(scene);
-    this.styleIsOld = true;
+    this.sensors.setScene(scene);
+    this.isStyleStale = true;
   }
 }
 
 function isLikeGround(box: Box3): boolean {
   const { x, y, z } = box.getSize(new Vector3());
-  return z < FLAT * Math.min(x, y);
+  return z < GROUND_FLATNESS * Math.min(x, y);
 }

@@ -2,34 +2,39 @@ import { BufferGeometry, Line, LineBasicMaterial, Matrix4, Quaternion, Vector3 }
 import type { EditablePart } from "../../protocol";
 import type { Draft, EditingState } from "../../state/editing/editing";
 import { nearestRpy, quaternionOf } from "../../state/editing/rotation";
-import { snapped } from "../../state/modelling/snapping";
+import { snap } from "../../state/modelling/snapping";
 import type { Session } from "../../state/session";
 import { RobotModelDrawing } from "../displays/robot-model";
 import { Gizmo } from "../modelling/gizmo";
-import { spanOf } from "../first-look";
+import { spanOf } from "../initial-view";
 import { framePose, poseMatrix } from "../pose";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
 
-/** Without a grid, numbers of a drag are kept to this: m, and rad for a hundredth of a degree. */
-const FINEST_LENGTH = 1e-4;
-const FINEST_ANGLE = Math.PI / 18000;
-const FINEST_AXIS = 1e-4;
-/** Between the middle of the handles and an edge of the canvas, pixels. */
-const LEAST_ROOM = 40;
+/**
+ * Without a grid, dragged values are rounded to these steps: m, rad (a hundredth of a degree), and components of an
+ * axis.
+ */
+const LENGTH_ROUNDING = 1e-4;
+const ANGLE_ROUNDING = Math.PI / 18000;
+const AXIS_ROUNDING = 1e-4;
+/** The minimum distance between the centre of the handles and an edge of the canvas, pixels. */
+const MIN_MARGIN = 40;
 const AXIS_COLOR = 0xff9d3c;
 const ONE = new Vector3(1, 1, 1);
 
-/** Handles on the part that is edited, and the robot as it would be: in the page alone, until the files contain the change. */
+/**
+ * The handles on the edited part, and a preview of the edited robot in this page, until the files contain the change.
+ */
 export class PartHandles {
   private readonly gizmo: Gizmo;
   private readonly axis = new Line(new BufferGeometry(), new LineBasicMaterial({ color: AXIS_COLOR, depthTest: false }));
   private readonly editing: EditingState;
-  /** While a handle is held: where the handles were, and the part. */
+  /** The handles' pose and the part at the start of a drag; null while no handle is held. */
   private start: { handles: Matrix4; draft: Draft } | null = null;
   private previewed: string | null = null;
-  /** The part that the camera has looked for: a user who turns the camera away from it afterwards does so on purpose. */
-  private sought = "";
+  /** The part that the camera was last moved to. The camera does not return to it after the user looks away. */
+  private framedPart = "";
 
   constructor(
     private readonly stage: Stage,
@@ -40,25 +45,25 @@ export class PartHandles {
     this.axis.renderOrder = 1;
     this.axis.visible = false;
     this.axis.frustumCulled = false;
-    stage.aids.add(this.axis);
+    stage.overlays.add(this.axis);
     const follow = (): void => this.update();
     for (const signal of [this.editing.changed, this.editing.draftChanged, session.frames.posesChanged, session.frames.tableChanged]) signal.on(follow);
     this.update();
   }
 
-  /** False for an event that others should have. */
+  /** Handles an event; returns false if it is left to others. */
   pointer(event: ToolEvent): boolean {
     const { gizmo } = this;
-    if (gizmo.held) {
+    if (gizmo.isHeld) {
       if (event.type === "move") this.drag(event);
-      else if (event.type === "up" && event.button === "left") this.letGo(event);
+      else if (event.type === "up" && event.button === "left") this.release(event);
       return true;
     }
     if (!this.editing.active || !this.editing.chosen || this.editing.whyNot !== "") return false;
     if (event.type === "down" && event.button === "left") {
-      const { now } = this;
-      if (!now || !gizmo.grab(event)) return false;
-      this.start = { handles: gizmo.pose, draft: now };
+      const { currentDraft } = this;
+      if (!currentDraft || !gizmo.grab(event)) return false;
+      this.start = { handles: gizmo.pose, draft: currentDraft };
       return true;
     }
     if (event.type !== "move" || event.left || event.middle || event.right || !gizmo.hover(event)) return false;
@@ -66,58 +71,61 @@ export class PartHandles {
     return true;
   }
 
-  /** What is asked for, and where the handles are on the canvas, for tests. */
+  /** Returns the requested pose, and the positions of the handles on the canvas, for tests. */
   inspect(): object {
     const axes = { x: new Vector3(1, 0, 0), y: new Vector3(0, 1, 0), z: new Vector3(0, 0, 1) };
-    const handles = Object.entries(axes).map(([name, axis]) => [name, this.gizmo.seenAt(axis)] as const);
+    const handles = Object.entries(axes).map(([name, axis]) => [name, this.gizmo.positionOf(axis)] as const);
     return { draft: this.editing.draft, handles: Object.fromEntries(handles) };
   }
 
-  private get now(): Draft | null {
+  private get currentDraft(): Draft | null {
     return this.editing.draft ?? this.editing.chosen;
   }
 
   private update(): void {
-    const { editing, gizmo, now } = this;
+    const { editing, gizmo, currentDraft } = this;
     const { chosen } = editing;
-    if (editing.draft) this.session.view.stay();
-    const shown = editing.active && chosen && now && editing.whyNot === "" ? chosen : null;
+    if (editing.draft) this.session.view.keepCamera();
+    const shown = editing.active && chosen && currentDraft && editing.whyNot === "" ? chosen : null;
     this.preview(shown);
-    if (gizmo.held) return;
+    if (gizmo.isHeld) return;
     const base = shown && this.base(shown);
-    if (!shown) this.sought = "";
-    if (!shown || !now || !base) {
+    if (!shown) this.framedPart = "";
+    if (!shown || !currentDraft || !base) {
       gizmo.show(null, "translate");
       this.axis.visible = false;
       return;
     }
-    const pose = base.clone().multiply(partMatrix(shown, now));
+    const pose = base.clone().multiply(partMatrix(shown, currentDraft));
     if (editing.frame === "parent" && shown.part !== "axis") {
       const turn = new Quaternion().setFromRotationMatrix(base);
       pose.compose(new Vector3().setFromMatrixPosition(pose), turn, ONE);
     }
     gizmo.show(pose, editing.mode, "local");
-    this.showAxis(shown, now, base);
-    this.seek(shown);
+    this.showAxis(shown, currentDraft, base);
+    this.frameHandles(shown);
   }
 
-  /** Goes back with the camera until the handles of a part that was chosen are seen beside the robot, where they are not in sight. */
-  private seek({ part, name, index }: EditablePart): void {
+  /**
+   * Moves the camera back until the handles of a newly chosen part are visible together with the robot, if they are not
+   * in view.
+   */
+  private frameHandles({ part, name, index }: EditablePart): void {
     const chosen = [part, name, index].join(" ");
-    if (chosen === this.sought) return;
-    this.sought = chosen;
-    const { x, y } = this.gizmo.seenAt(new Vector3());
+    if (chosen === this.framedPart) return;
+    this.framedPart = chosen;
+    const { x, y } = this.gizmo.positionOf(new Vector3());
     const { width, height } = this.stage.viewport.size;
-    const margin = Math.min(LEAST_ROOM, width / 4, height / 4);
+    const margin = Math.min(MIN_MARGIN, width / 4, height / 4);
     if (x >= margin && y >= margin && x <= width - margin && y <= height - margin) return;
     const box = this.stage.boundsOf(this.editing.current?.display ?? "");
     const around = box.getSize(new Vector3()).length() / 10;
     box.expandByPoint(new Vector3().setFromMatrixPosition(this.gizmo.pose)).expandByScalar(around);
     const span = spanOf(box);
-    if (span) this.session.view.fit(span, this.stage.room.take());
+    if (span) this.session.view.fit(span, this.stage.freeRoom.center());
   }
 
-  /** The frame of a part's numbers, in the fixed frame; null without a transform. */
+  /** Returns the frame of a part's values, in the fixed frame; null without a transform. */
   private base(part: EditablePart): Matrix4 | null {
     const { current } = this.editing;
     const robot = this.session.robots.get(current?.display ?? "");
@@ -135,50 +143,50 @@ export class PartHandles {
     const steps = editing.snapping.steps(event.ctrl);
     gizmo.drag(event, { length: 0, angle: steps.angle });
     if (!start || !base) return;
-    // By how much the handles have gone, in the frame that the numbers are in.
+    // Express the motion of the handles in the frame of the part's values.
     const by = gizmo.pose.multiply(start.handles.clone().invert());
     const inBase = base.clone().invert().multiply(by).multiply(base);
-    editing.move(chosen.part === "axis" ? turnedAxis(start.draft, inBase) : this.moved(chosen, start.draft, inBase, steps));
+    editing.move(chosen.part === "axis" ? turnedAxis(start.draft, inBase) : this.draftAfter(chosen, start.draft, inBase, steps));
   }
 
-  private moved(part: EditablePart, from: Draft, by: Matrix4, steps: { length: number; angle: number }): Draft {
+  private draftAfter(part: EditablePart, from: Draft, by: Matrix4, steps: { length: number; angle: number }): Draft {
     const before = partMatrix(part, from);
     const after = by.clone().multiply(before);
     const [at, turn] = [new Vector3(), new Quaternion()];
     after.decompose(at, turn, new Vector3());
     if (this.editing.mode === "rotate") {
       const rpy = nearestRpy([turn.x, turn.y, turn.z, turn.w], from.rpy);
-      return { xyz: from.xyz, rpy: keep(rpy, from.rpy, steps.angle > 0 ? 0 : FINEST_ANGLE) };
+      return { xyz: from.xyz, rpy: roundChanged(rpy, from.rpy, steps.angle > 0 ? 0 : ANGLE_ROUNDING) };
     }
-    const step = steps.length || FINEST_LENGTH;
-    if (this.editing.frame === "parent") return { xyz: keep(at.toArray(), from.xyz, step), rpy: from.rpy };
-    // Along its own axes the way is kept to the grid, and not the place.
+    const step = steps.length || LENGTH_ROUNDING;
+    if (this.editing.frame === "parent") return { xyz: roundChanged(at.toArray(), from.xyz, step), rpy: from.rpy };
+    // Along the part's own axes, round the distance to the grid rather than the position.
     const own = new Quaternion().setFromRotationMatrix(before);
     const way = at.sub(new Vector3().fromArray(from.xyz)).applyQuaternion(own.clone().invert());
-    const kept = new Vector3(...way.toArray().map((part) => snapped(part, step))).applyQuaternion(own);
-    return { xyz: keep(kept.toArray().map((part, i) => part + (from.xyz[i] ?? 0)), from.xyz, 0), rpy: from.rpy };
+    const offset = new Vector3(...way.toArray().map((part) => snap(part, step))).applyQuaternion(own);
+    return { xyz: roundChanged(offset.toArray().map((part, i) => part + (from.xyz[i] ?? 0)), from.xyz, 0), rpy: from.rpy };
   }
 
-  private letGo(event: ToolEvent): void {
+  private release(event: ToolEvent): void {
     this.gizmo.release(event);
     this.start = null;
     this.update();
   }
 
-  /** Has the robot drawn as it would be. */
+  /** Draws the robot as it would be after the edit. */
   private preview(part: EditablePart | null): void {
-    const { editing, stage, now } = this;
+    const { editing, stage, currentDraft } = this;
     const display = part && (editing.draft || part.part === "collision") ? (editing.current?.display ?? null) : null;
     if (this.previewed !== null && this.previewed !== display) this.robot(this.previewed)?.displace(null);
     this.previewed = display;
-    if (display === null || !part || !now || part.part === "axis" || part.part === "inertial") {
+    if (display === null || !part || !currentDraft || part.part === "axis" || part.part === "inertial") {
       if (display !== null) this.robot(display)?.displace(null);
       stage.loop.invalidate();
       return;
     }
-    const [before, after] = [partMatrix(part, part), partMatrix(part, now)];
+    const [before, after] = [partMatrix(part, part), partMatrix(part, currentDraft)];
     if (part.part === "joint") {
-      const links = this.below(display, part.name);
+      const links = this.linksBelow(display, part.name);
       this.robot(display)?.displace({
         link: (name, matrix) => {
           const base = links.has(name) ? this.base(part) : null;
@@ -197,8 +205,8 @@ export class PartHandles {
     return drawing instanceof RobotModelDrawing ? drawing : null;
   }
 
-  /** The links that a joint carries. */
-  private below(display: string, joint: string): ReadonlySet<string> {
+  /** Returns the links that a joint carries. */
+  private linksBelow(display: string, joint: string): ReadonlySet<string> {
     const joints = this.session.robots.get(display)?.joints ?? [];
     const found = new Set<string>();
     const pending = joints.filter(({ name }) => name === joint).map(({ child }) => child);
@@ -219,7 +227,7 @@ export class PartHandles {
   }
 }
 
-/** The pose of a part, or the direction of its axis: turned from x. */
+/** Returns the pose of a part; for an axis, the rotation from x to its direction. */
 function partMatrix(part: EditablePart, { xyz, rpy }: Draft): Matrix4 {
   if (part.part === "axis") {
     const turn = new Quaternion().setFromUnitVectors(new Vector3(1, 0, 0), new Vector3().fromArray(xyz).normalize());
@@ -230,14 +238,14 @@ function partMatrix(part: EditablePart, { xyz, rpy }: Draft): Matrix4 {
 
 function turnedAxis({ xyz }: Draft, by: Matrix4): Draft {
   const [x, y, z] = new Vector3().fromArray(xyz).normalize().transformDirection(by).toArray();
-  return { xyz: [x, y, z].map((part) => snapped(part, FINEST_AXIS)), rpy: [] };
+  return { xyz: [x, y, z].map((part) => snap(part, AXIS_ROUNDING)), rpy: [] };
 }
 
-/** Numbers on a grid; those that hardly changed are what they were. */
-function keep(numbers: readonly number[], before: readonly number[], step: number): number[] {
+/** Rounds numbers to a grid, and keeps those that hardly changed. */
+function roundChanged(numbers: readonly number[], before: readonly number[], step: number): number[] {
   return numbers.map((number, i) => {
     const old = before[i] ?? 0;
-    return Math.abs(number - old) < 1e-6 ? old : Number(snapped(number, step).toPrecision(12));
+    return Math.abs(number - old) < 1e-6 ? old : Number(snap(number, step).toPrecision(12));
   });
 }
 

@@ -3,7 +3,7 @@ import type { CameraModel } from "../../protocol";
 
 const NEAR = 0.01;
 
-/** The share of a window that an image covers along x and y, so that it keeps its shape; RViz's rule. */
+/** Returns the share of a window that an image covers along x and y without distortion, by RViz's rule. */
 export function imageZoom(
   camera: CameraModel,
   factor: number,
@@ -15,7 +15,7 @@ export function imageZoom(
   return image > aspect ? [factor, (factor / image) * aspect] : [(factor / aspect) * image, factor];
 }
 
-/** The projection of a pinhole camera whose image covers `zoom` of the window; `far` is where the view ends, m. */
+/** Returns the projection of a pinhole camera whose image covers `zoom` of the window; `far` is the far plane, m. */
 export function projection(camera: CameraModel, zoom: readonly [number, number], far: number): Matrix4 {
   const { width, height, focal_x, focal_y, centre_x, centre_y } = camera;
   const x = ((2 * focal_x) / width) * zoom[0];
@@ -28,7 +28,10 @@ export function projection(camera: CameraModel, zoom: readonly [number, number],
   return new Matrix4().set(x, 0, shiftX, 0, 0, y, shiftY, 0, 0, 0, depth, shift, 0, 0, -1, 0);
 }
 
-/** The pose of the camera in the frame of its image, turned from the image's axes (z ahead) to the scene's (z back). */
+/**
+ * Returns the pose of the camera in the frame of its image, rotated from the image's axes (z forward) to the scene's (z
+ * backward).
+ */
 export function cameraInImageFrame({ offset_x, offset_y }: CameraModel): Matrix4 {
   return new Matrix4().makeRotationX(Math.PI).setPosition(offset_x, offset_y, 0);
 }

@@ -1,38 +1,41 @@
 import type { ImageFrame } from "../../protocol";
 
-/** An image that is to be painted. */
-interface Waiting {
+/** An image waiting to be painted. */
+interface QueuedImage {
   image: ImageFrame | ImageBitmap;
   done: (shown: boolean) => void;
 }
 
-/** A file that is to be unpacked. */
-interface Packed {
+/** An image file waiting to be decoded. */
+interface EncodedImage {
   turn: number;
   frame: ImageFrame;
   done: (shown: boolean) => void;
 }
 
-/** The newest image of a display, on a canvas of its size. Of files that come faster than they are unpacked only the newest is. */
+/**
+ * The newest image of a display, on a canvas of its size. If image files arrive faster than they are decoded, only the
+ * newest is decoded.
+ */
 export class ImageCanvas {
   readonly canvas = document.createElement("canvas");
   private readonly context: CanvasRenderingContext2D;
-  private taken = 0;
+  private lastTurn = 0;
   private newest = 0;
   private painted = 0;
-  private waiting: Waiting | null = null;
-  private packed: Packed | null = null;
-  private unpacks = false;
+  private waiting: QueuedImage | null = null;
+  private undecoded: EncodedImage | null = null;
+  private isDecoding = false;
 
-  /** `soon` says when images are painted: the newest of those that came by then. */
-  constructor(private readonly soon: (paint: () => void) => void = (paint) => paint()) {
+  /** `schedule` delays painting; only the newest image at that time is painted. */
+  constructor(private readonly schedule: (paint: () => void) => void = (paint) => paint()) {
     this.canvas.width = this.canvas.height = 0;
     const context = this.canvas.getContext("2d", { willReadFrequently: true });
     if (!context) throw new Error("This browser gives no 2D canvas");
     this.context = context;
   }
 
-  /** The number of images shown. */
+  /** The number of images shown so far. */
   get count(): number {
     return this.painted;
   }
@@ -41,60 +44,60 @@ export class ImageCanvas {
     return this.canvas.width === 0;
   }
 
-  /** Takes an image; calls `done` when it is on the canvas, or with false when it cannot be read. */
-  take(frame: ImageFrame, done: (shown: boolean) => void): void {
-    const turn = ++this.taken;
+  /** Shows an image; calls `done` when it is on the canvas, or with false if it cannot be decoded. */
+  show(frame: ImageFrame, done: (shown: boolean) => void): void {
+    const turn = ++this.lastTurn;
     if (frame.encoding !== "file") {
-      this.hold(turn, { image: frame, done });
+      this.queue(turn, { image: frame, done });
       return;
     }
-    this.packed = { turn, frame, done };
-    if (!this.unpacks) void this.unpack();
+    this.undecoded = { turn, frame, done };
+    if (!this.isDecoding) void this.decode();
   }
 
   clear(): void {
-    this.newest = ++this.taken;
-    this.packed = null;
-    this.drop();
+    this.newest = ++this.lastTurn;
+    this.undecoded = null;
+    this.discard();
     this.canvas.width = this.canvas.height = 0;
   }
 
-  /** Colour of a pixel, for tests. */
+  /** Returns the colour of a pixel, for tests. */
   colorAt(x: number, y: number): number[] {
     return this.isEmpty ? [] : [...this.context.getImageData(x, y, 1, 1).data];
   }
 
-  /** One after the other: each takes the memory of all its pixels. */
-  private async unpack(): Promise<void> {
-    this.unpacks = true;
-    for (let next = this.packed; next !== null; next = this.packed) {
-      this.packed = null;
+  /** Decodes one file at a time, because each needs memory for all its pixels. */
+  private async decode(): Promise<void> {
+    this.isDecoding = true;
+    for (let next = this.undecoded; next !== null; next = this.undecoded) {
+      this.undecoded = null;
       const { turn, frame, done } = next;
       try {
         const image = await createImageBitmap(new Blob([frame.data as Uint8Array<ArrayBuffer>]));
-        this.hold(turn, { image, done });
+        this.queue(turn, { image, done });
       } catch {
         done(false);
       }
     }
-    this.unpacks = false;
+    this.isDecoding = false;
   }
 
-  private hold(turn: number, waiting: Waiting): void {
+  private queue(turn: number, waiting: QueuedImage): void {
     const isOld = turn < this.newest;
     if (!isOld) {
       this.newest = turn;
-      this.drop();
+      this.discard();
     }
     if (isOld || waiting.image.width === 0 || waiting.image.height === 0) {
       if (isBitmap(waiting.image)) waiting.image.close();
       return;
     }
     this.waiting = waiting;
-    this.soon(this.paint);
+    this.schedule(this.paint);
   }
 
-  private drop(): void {
+  private discard(): void {
     if (this.waiting && isBitmap(this.waiting.image)) this.waiting.image.close();
     this.waiting = null;
   }
@@ -107,8 +110,8 @@ export class ImageCanvas {
     if (canvas.width !== width) canvas.width = width;
     if (canvas.height !== height) canvas.height = height;
     if (isBitmap(image)) context.drawImage(image, 0, 0);
-    else context.putImageData(new ImageData(pixels(image), width, height), 0, 0);
-    this.drop();
+    else context.putImageData(new ImageData(rgbaOf(image), width, height), 0, 0);
+    this.discard();
     this.painted += 1;
     done(true);
   };
@@ -118,8 +121,8 @@ function isBitmap(image: ImageFrame | ImageBitmap): image is ImageBitmap {
   return "close" in image;
 }
 
-/** Red, green, blue and alpha of each pixel. */
-export function pixels({ encoding, data }: ImageFrame): Uint8ClampedArray<ArrayBuffer> {
+/** Returns red, green, blue and alpha of each pixel. */
+export function rgbaOf({ encoding, data }: ImageFrame): Uint8ClampedArray<ArrayBuffer> {
   if (encoding === "rgba") return new Uint8ClampedArray(data);
   const step = encoding === "grey" ? 1 : 3;
   const [green, blue] = encoding === "grey" ? [0, 0] : [1, 2];

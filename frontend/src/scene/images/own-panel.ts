@@ -4,16 +4,16 @@ import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import type { DrawingContext } from "../displays/drawing";
 
-/** Displays that show no data in the scene. */
-const NOTHING_TO_SEE = new Set(["rviz_default_plugins/Grid", "rviz_default_plugins/Image"]);
+/** Display classes that show no data in the scene. */
+const WITHOUT_DATA = new Set(["rviz_default_plugins/Grid", "rviz_default_plugins/Image"]);
 
-/** The panel of an Image or Camera display: there as long as the display is enabled, as in RViz. */
+/** The panel of an Image or Camera display, which is open while the display is enabled, as in RViz. */
 export class OwnPanel {
   readonly element: HTMLElement;
   private readonly notice = h("p", { class: "image-notice" });
   private readonly key: string;
   private title = "";
-  private offered = false;
+  private isOpen = false;
 
   constructor(
     private readonly context: DrawingContext,
@@ -25,28 +25,28 @@ export class OwnPanel {
     this.element = h("div", { class: "image-panel" }, canvas, this.notice);
   }
 
-  /** Text over the image, or in its place, and what it comes from, where that is known; empty for none. */
-  say(text: string, cause = ""): void {
+  /** Shows a text over the image or in its place, and its cause if known; an empty text shows nothing. */
+  showText(text: string, cause = ""): void {
     this.notice.replaceChildren(text, ...(cause === "" ? [] : [h("small", {}, cause)]));
     this.notice.hidden = text === "";
   }
 
-  /** Whether the user can see it. */
-  get isSeen(): boolean {
+  /** Whether the panel is visible to the user. */
+  get isVisible(): boolean {
     return this.element.clientWidth > 0 && this.element.clientHeight > 0;
   }
 
-  /** Opens, closes and names the panel as the display is now. */
-  match(): void {
+  /** Opens, closes and titles the panel to match the display. */
+  update(): void {
     const { display, panels, session } = this.context;
     this.canvas.setAttribute("aria-label", display.name);
     if (!display.enabled) {
       this.close();
-    } else if (!this.offered) {
-      this.offered = true;
+    } else if (!this.isOpen) {
+      this.isOpen = true;
       this.title = display.name;
       const closed = (): void => session.setProperty(display.enabledId, false);
-      panels.offer({ key: this.key, title: this.title, icon: this.icon, element: this.element, instead: showsOnlyImages(session), closed });
+      panels.offer({ key: this.key, title: this.title, icon: this.icon, element: this.element, replacesScene: showsOnlyImages(session), closed });
     } else if (this.title !== display.name) {
       this.title = display.name;
       panels.retitle(this.key, this.title);
@@ -54,13 +54,13 @@ export class OwnPanel {
   }
 
   close(): void {
-    if (this.offered) this.context.panels.withdraw(this.key);
-    this.offered = false;
+    if (this.isOpen) this.context.panels.withdraw(this.key);
+    this.isOpen = false;
   }
 }
 
-/** Whether the page shows a recording with only its images switched on. */
+/** Whether the page shows a recording with only its image displays enabled. */
 function showsOnlyImages({ timeline, displays }: Session): boolean {
-  const nothing = (display: DisplayState): boolean => !display.enabled || display.isGroup || NOTHING_TO_SEE.has(display.drawing);
+  const nothing = (display: DisplayState): boolean => !display.enabled || display.isGroup || WITHOUT_DATA.has(display.drawing);
   return timeline.timeline?.live === false && displays.displays.every(nothing);
 }

@@ -1,6 +1,8 @@
 import { Color, LinearSRGBColorSpace, WebGLRenderTarget, type Camera, type Scene, type WebGLRenderer } from "three";
 
-/** The scene drawn to a canvas of its own, see-through where there is nothing; edges are not smoothed, to be quick. */
+/**
+ * The scene rendered to a canvas of its own, transparent where nothing is drawn, and without antialiasing to be fast.
+ */
 export class SceneImage {
   readonly canvas = document.createElement("canvas");
   private readonly target = new WebGLRenderTarget(1, 1, { colorSpace: LinearSRGBColorSpace });
@@ -13,7 +15,7 @@ export class SceneImage {
     this.context = context;
   }
 
-  /** Draws the scene as a camera sees it; sizes in pixels. */
+  /** Renders the scene for a camera; sizes in pixels. */
   draw(renderer: WebGLRenderer, scene: Scene, camera: Camera, width: number, height: number): void {
     if (this.canvas.width !== width || this.canvas.height !== height) {
       this.canvas.width = width;
@@ -29,7 +31,7 @@ export class SceneImage {
     renderer.readRenderTargetPixels(this.target, 0, 0, width, height, this.bytes);
     renderer.setRenderTarget(null);
     renderer.setClearColor(color, alpha);
-    this.context.putImageData(upright(this.bytes, width, height), 0, 0);
+    this.context.putImageData(toImageData(this.bytes, width, height), 0, 0);
   }
 
   dispose(): void {
@@ -37,8 +39,8 @@ export class SceneImage {
   }
 }
 
-/** Rows from the top on, and colours not multiplied with alpha, as canvases want them. */
-function upright(bytes: Uint8Array, width: number, height: number): ImageData {
+/** Returns an image with rows from the top and colours not premultiplied by alpha, as canvases expect. */
+function toImageData(bytes: Uint8Array, width: number, height: number): ImageData {
   const image = new ImageData(width, height);
   const { data } = image;
   const row = width * 4;

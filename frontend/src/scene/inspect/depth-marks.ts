@@ -1,22 +1,22 @@
 import { Color, Matrix4, Vector3, type Object3D } from "three";
 import { CopyBatch } from "../objects/copy-batch";
-import { axesGeometry, ballGeometry } from "../objects/geometries";
+import { axesGeometry, sphereGeometry } from "../objects/geometries";
 import { LabelBatch } from "../objects/label-batch";
 import { linkPose, type InspectedRobot } from "./inspected-robot";
 
-/** Lengths in units of the robot's mark size. */
-const AXES = 0.42;
-const BALL = 0.11;
-const LABEL = 0.17;
-/** What a frame is of the size of its parent's. */
-const SHRINKING = 0.88;
-const SMALLEST = 0.3;
-/** With more frames than these only levels are written, not names. */
-const MOST_NAMES = 60;
-/** Hues advance by the golden ratio, so that neighbouring levels differ. */
+/** Sizes in units of the robot's mark size. */
+const AXES_SIZE = 0.42;
+const BALL_SIZE = 0.11;
+const LABEL_SIZE = 0.17;
+/** The size of a frame relative to its parent's, and the minimum size. */
+const SIZE_RATIO = 0.88;
+const MIN_SIZE = 0.3;
+/** With more frames than this, only levels are written, not names. */
+const MAX_NAMES = 60;
+/** Hues advance by the golden ratio, so that consecutive levels differ. */
 const HUE_STEP = 0.618;
 
-/** The frames of links with a ball in the colour of their level in the tree; deeper ones are smaller. */
+/** The frames of links, each with a ball in the colour of its level in the tree; deeper ones are smaller. */
 export class DepthMarks {
   private readonly axes: CopyBatch;
   private readonly balls: CopyBatch;
@@ -25,11 +25,11 @@ export class DepthMarks {
 
   constructor(parent: Object3D) {
     this.axes = new CopyBatch(parent, axesGeometry(1, 0.06, 8), { isOverlay: true });
-    this.balls = new CopyBatch(parent, ballGeometry(12), { isOverlay: true });
+    this.balls = new CopyBatch(parent, sphereGeometry(12), { isOverlay: true });
     parent.add(this.labels.root);
   }
 
-  /** `deepest` is the last level to be drawn, null for all; with null for the robots nothing is. */
+  /** Draws the frames down to the level `deepest`, or all for null; null for `robots` draws nothing. */
   update(robots: readonly InspectedRobot[] | null, deepest: number | null): void {
     const frames = (robots ?? []).flatMap((robot) =>
       [...robot.model.links.keys()].flatMap((link) => {
@@ -37,7 +37,7 @@ export class DepthMarks {
         return deepest === null || depth <= deepest ? [{ robot, link, depth }] : [];
       }),
     );
-    const named = frames.length <= MOST_NAMES;
+    const named = frames.length <= MAX_NAMES;
     const text = (depth: number, link: string): string => (named ? `${depth} ${link}` : String(depth));
     this.axes.begin(frames.length);
     this.balls.begin(frames.length);
@@ -46,22 +46,22 @@ export class DepthMarks {
     const pose = new Matrix4();
     for (const { robot, link, depth } of frames) {
       if (!linkPose(robot, link, pose)) continue;
-      const size = robot.unit * Math.max(SMALLEST, SHRINKING ** depth);
-      this.labels.add(text(depth, link), new Vector3().setFromMatrixPosition(pose), LABEL * size, 0, 1);
-      this.axes.add(pose.clone().scale(cube(AXES * size)));
-      this.balls.add(pose.scale(cube(BALL * size)), 0, 1, levelColor(depth));
+      const size = robot.unit * Math.max(MIN_SIZE, SIZE_RATIO ** depth);
+      this.labels.add(text(depth, link), new Vector3().setFromMatrixPosition(pose), LABEL_SIZE * size, 0, 1);
+      this.axes.add(pose.clone().scale(cube(AXES_SIZE * size)));
+      this.balls.add(pose.scale(cube(BALL_SIZE * size)), 0, 1, levelColor(depth));
       this.levels[depth] = (this.levels[depth] ?? 0) + 1;
     }
     for (const batch of [this.axes, this.balls, this.labels]) batch.end();
   }
 
-  /** Frames drawn on each level. */
+  /** Returns the number of frames drawn on each level. */
   inspect(): object {
     return Array.from(this.levels, (count) => count);
   }
 }
 
-/** 0xrrggbb */
+/** Returns the colour of a level of the tree, 0xrrggbb. */
 function levelColor(depth: number): number {
   return new Color().setHSL((0.58 + depth * HUE_STEP) % 1, 0.85, 0.6).getHex();
 }

@@ -5,20 +5,20 @@ import type { InspectedRobot } from "./inspected-robot";
 import { JointMarks } from "./joint-marks";
 import { MassMarks } from "./mass-marks";
 
-/** Marks are made with this part of the robot's diagonal. */
+/** The mark size, as a share of the robot's diagonal. */
 const UNIT = 0.2;
-/** For a robot that draws nothing, m. */
-const UNIT_OF_NOTHING = 0.2;
+/** The mark size for a robot without visible parts, m. */
+const DEFAULT_UNIT = 0.2;
 
-/** Draws what is invisible of the robots, as far as the user wants to see it. It costs nothing while he does not. */
+/** Draws those invisible properties of robots that the user wants to see. It costs nothing while there are none. */
 export class InspectLayer {
   readonly root = new Group();
   private marks: { masses: MassMarks; joints: JointMarks; frames: DepthMarks } | null = null;
   private releases: (() => void)[] = [];
-  private isMasses = false;
+  private showsMasses = false;
   private readonly units = new Map<string, { revision: number; unit: number }>();
 
-  /** @param boundsOf the box around what a display draws, in the fixed frame. */
+  /** @param boundsOf - returns the bounding box of what a display draws, in the fixed frame. */
   constructor(
     private readonly session: Session,
     private readonly boundsOf: (display: string) => Box3,
@@ -26,28 +26,28 @@ export class InspectLayer {
   ) {
     const { inspect, description } = session;
     inspect.changed.on(() => {
-      this.holdWhatIsNeeded();
+      this.updateSubscriptions();
       invalidate();
     });
-    // Positions may come after the transforms that they go with, which are drawn by then.
+    // Positions may arrive after the transforms of the same time, which are drawn by then.
     session.joints.positionsChanged.on(() => {
       if (inspect.current.joints) invalidate();
     });
     description.arrived.on(invalidate);
     description.findingsArrived.on(invalidate);
-    this.holdWhatIsNeeded();
+    this.updateSubscriptions();
   }
 
-  /** Puts everything where it is now; before each frame. */
+  /** Updates all marks; called before each frame. */
   update(): void {
-    const { current, deepest, any } = this.session.inspect;
-    if (!any && !this.marks) return;
+    const { current, deepest, isActive } = this.session.inspect;
+    if (!isActive && !this.marks) return;
     this.marks ??= {
       masses: new MassMarks(this.root),
       joints: new JointMarks(this.root),
       frames: new DepthMarks(this.root),
     };
-    const robots = any ? this.robots() : [];
+    const robots = isActive ? this.robots() : [];
     this.marks.masses.update(robots, current);
     this.marks.joints.update(robots, current.joints);
     this.marks.frames.update(current.frames ? robots : null, deepest);
@@ -63,30 +63,30 @@ export class InspectLayer {
     return displays.displays.flatMap(({ id, enabled }) => {
       const model = enabled ? description.of(id) : undefined;
       if (!model) return [];
-      const implausible = new Set(this.isMasses ? description.findingsOf(id).map((finding) => finding.link) : []);
+      const implausible = new Set(this.showsMasses ? description.findingsOf(id).map((finding) => finding.link) : []);
       return [{ model, frames, unit: this.unitOf(id, model.description.revision), implausible, positions: joints.positions }];
     });
   }
 
-  /** Marks keep their size while the robot moves; another description may make it another size. */
+  /** Returns the mark size. Marks keep their size while the robot moves; a new description may change it. */
   private unitOf(display: string, revision: number): number {
     const { scale } = this.session.inspect;
     const known = this.units.get(display);
     if (known?.revision === revision) return known.unit * scale;
     const box = this.boundsOf(display);
-    const unit = box.isEmpty() ? UNIT_OF_NOTHING : UNIT * box.getSize(new Vector3()).length();
+    const unit = box.isEmpty() ? DEFAULT_UNIT : UNIT * box.getSize(new Vector3()).length();
     if (!box.isEmpty()) this.units.set(display, { revision, unit });
     return unit * scale;
   }
 
-  private holdWhatIsNeeded(): void {
+  private updateSubscriptions(): void {
     const { inspect, description } = this.session;
     const { centers, boxes, ellipsoids } = inspect.current;
-    this.isMasses = centers || boxes || ellipsoids;
+    this.showsMasses = centers || boxes || ellipsoids;
     const before = this.releases;
     this.releases = [];
-    if (inspect.any) this.releases.push(description.hold());
-    if (this.isMasses) this.releases.push(description.holdFindings());
+    if (inspect.isActive) this.releases.push(description.hold());
+    if (this.showsMasses) this.releases.push(description.holdFindings());
     for (const release of before) release();
   }
 }

@@ -4,19 +4,19 @@ import type { DescriptionModel } from "../../state/description-model";
 import type { FrameStore } from "../../state/frames";
 import { framePose } from "../pose";
 
-/** A robot whose invisible parts are drawn. */
+/** A robot whose invisible properties are drawn. */
 export interface InspectedRobot {
   readonly model: DescriptionModel;
   readonly frames: FrameStore;
-  /** Length that marks are made with, m: some part of the robot's size. */
+  /** The mark size, m: a share of the robot's size. */
   readonly unit: number;
   /** Links whose mass or inertia is implausible. */
   readonly implausible: ReadonlySet<string>;
-  /** Positions of joints that are known from elsewhere than transforms, rad or m. */
+  /** Joint positions that are known from other sources than transforms, rad or m. */
   readonly positions: Readonly<Record<string, number>>;
 }
 
-/** Writes the pose of a link in the fixed frame; false where it has none. */
+/** Computes the pose of a link in the fixed frame; returns false if it has none. */
 export function linkPose({ model, frames }: InspectedRobot, link: string, matrix: Matrix4): boolean {
   return framePose(frames, frames.row(model.links.get(link)?.frame ?? ""), matrix);
 }
@@ -28,9 +28,9 @@ const turn = new Quaternion();
 const scale = new Vector3();
 
 /**
- * Writes the frame of a joint at its zero position into `matrix`, in the fixed frame.
+ * Computes the frame of a joint at its zero position, in the fixed frame.
  *
- * @returns the position of the joint, rad or m, from the transforms; null where they do not contain it.
+ * @returns the position of the joint according to the transforms, rad or m; null if they do not contain it.
  */
 export function jointPose(robot: InspectedRobot, joint: JointDetails, matrix: Matrix4): number | null {
   if (!linkPose(robot, joint.parent, matrix)) return null;
@@ -43,7 +43,7 @@ export function jointPose(robot: InspectedRobot, joint: JointDetails, matrix: Ma
   if (joint.kind === "prismatic") return at.x * ax + at.y * ay + at.z * az;
   const angle = 2 * Math.atan2(turn.x * ax + turn.y * ay + turn.z * az, turn.w);
   const known = robot.positions[joint.name];
-  // Transforms give angles without whole turns.
+  // Transforms give angles only modulo whole turns.
   if (known !== undefined) return known;
   return Math.atan2(Math.sin(angle), Math.cos(angle));
 }

@@ -6,18 +6,18 @@ import { VertexStream } from "./vertex-stream";
 const AXIS = 0xff9d3c;
 const RANGE = 0x35d0c0;
 const CURRENT = 0xfff04d;
-const BEYOND = 0xff4d42;
+const BEYOND_LIMIT = 0xff4d42;
 const FAN_ALPHA = 0.16;
-/** Lengths in units of the robot's mark size. */
+/** Sizes in units of the robot's mark size. */
 const RADIUS = 0.5;
 const AXIS_REACH = 0.65;
-const END = 0.09;
-/** rad between two points of an arc. */
-const STEP = Math.PI / 32;
-/** How far a position may be beyond a limit and still count as at it. */
+const STOP_SIZE = 0.09;
+/** The angle between two points of an arc, rad. */
+const ARC_STEP = Math.PI / 32;
+/** A position may exceed a limit by this much and still count as within it. */
 const TOLERANCE = 1e-4;
 
-/** The axes of joints with arcs or rails from limit to limit, and where the joints stand. */
+/** The axes of joints with arcs or rails between their limits, and the joints' positions. */
 export class JointMarks {
   private readonly fans: VertexStream;
   private readonly lines: VertexStream;
@@ -53,17 +53,17 @@ export class JointMarks {
     const { name, lower, upper } = joint;
     this.shown.push({ name, position, lower, upper });
     const reach = AXIS_REACH * robot.unit;
-    if (joint.kind === "prismatic") this.rail(pose, axis, joint, position, robot.unit);
+    if (joint.kind === "prismatic") this.addRail(pose, axis, joint, position, robot.unit);
     else {
       this.lines.setLook(AXIS);
       this.lines.add(...[-reach, reach].map((along) => axis.clone().multiplyScalar(along).applyMatrix4(pose)));
-      this.arc(pose, axis, joint, position, robot.unit);
+      this.addArc(pose, axis, joint, position, robot.unit);
     }
   }
 
-  /** An arc from limit to limit around the axis, a circle without limits, and a hand at the position. */
-  private arc(pose: Matrix4, axis: Vector3, joint: JointDetails, position: number | null, unit: number): void {
-    const [u, v] = across(axis);
+  /** Draws an arc between the limits, or a circle without limits, and a pointer at the position. */
+  private addArc(pose: Matrix4, axis: Vector3, joint: JointDetails, position: number | null, unit: number): void {
+    const [u, v] = perpendiculars(axis);
     const point = (angle: number, radius: number): Vector3 =>
       new Vector3()
         .addScaledVector(u, radius * Math.cos(angle))
@@ -72,10 +72,10 @@ export class JointMarks {
     const radius = RADIUS * unit;
     const limited = joint.lower !== null && joint.upper !== null;
     const from = limited ? (joint.lower ?? 0) : 0;
-    // Limits of several turns overlap; once round says as much.
+    // Limits may span several turns; draw one full circle at most.
     const to = limited ? Math.min(joint.upper ?? 0, from + 2 * Math.PI) : 2 * Math.PI;
     const center = new Vector3().setFromMatrixPosition(pose);
-    const steps = Math.max(1, Math.ceil((to - from) / STEP));
+    const steps = Math.max(1, Math.ceil((to - from) / ARC_STEP));
     this.lines.setLook(RANGE);
     this.fans.setLook(RANGE, FAN_ALPHA);
     let last = point(from, radius);
@@ -87,19 +87,19 @@ export class JointMarks {
     }
     if (limited) for (const end of [joint.lower ?? 0, joint.upper ?? 0]) this.lines.add(center, point(end, radius * 1.12));
     if (position === null) return;
-    this.lines.setLook(isBeyond(joint, position) ? BEYOND : CURRENT);
+    this.lines.setLook(isBeyond(joint, position) ? BEYOND_LIMIT : CURRENT);
     this.lines.add(center, point(position, radius * 1.2));
-    this.fans.setLook(isBeyond(joint, position) ? BEYOND : CURRENT, 0.95);
+    this.fans.setLook(isBeyond(joint, position) ? BEYOND_LIMIT : CURRENT, 0.95);
     this.fans.add(point(position, radius), point(position - 0.07, radius * 1.2), point(position + 0.07, radius * 1.2));
   }
 
-  /** A rail from limit to limit along the axis with stops at its ends, and a bead at the position. */
-  private rail(pose: Matrix4, axis: Vector3, joint: JointDetails, position: number | null, unit: number): void {
-    const [u, v] = across(axis);
+  /** Draws a rail between the limits along the axis with stops at its ends, and a bead at the position. */
+  private addRail(pose: Matrix4, axis: Vector3, joint: JointDetails, position: number | null, unit: number): void {
+    const [u, v] = perpendiculars(axis);
     const point = (along: number, x = 0, y = 0): Vector3 =>
       axis.clone().multiplyScalar(along).addScaledVector(u, x).addScaledVector(v, y).applyMatrix4(pose);
     const { lower, upper } = joint;
-    const end = END * unit;
+    const end = STOP_SIZE * unit;
     if (lower !== null && upper !== null) {
       this.lines.setLook(RANGE);
       this.lines.add(point(lower), point(upper));
@@ -111,7 +111,7 @@ export class JointMarks {
     this.lines.setLook(AXIS, 0.8);
     this.lines.add(point((lower ?? 0) - reach / 2), point(lower ?? 0), point(upper ?? 0), point((upper ?? 0) + reach / 2));
     if (position === null) return;
-    this.fans.setLook(isBeyond(joint, position) ? BEYOND : CURRENT, 0.95);
+    this.fans.setLook(isBeyond(joint, position) ? BEYOND_LIMIT : CURRENT, 0.95);
     const ring = [point(position, end), point(position, 0, end), point(position, -end), point(position, 0, -end)];
     const [ahead, behind] = [point(position + end), point(position - end)];
     ring.forEach((corner, i) => {
@@ -121,8 +121,11 @@ export class JointMarks {
   }
 }
 
-/** Two directions across an axis: angle 0 is along the first. The axis that is farthest from it stays in the plane. */
-function across(axis: Vector3): [Vector3, Vector3] {
+/**
+ * Returns two directions perpendicular to an axis; angle 0 is along the first, which is the projection of the
+ * coordinate axis farthest from the joint's axis.
+ */
+function perpendiculars(axis: Vector3): [Vector3, Vector3] {
   const parts = axis.toArray().map(Math.abs);
   const helper = new Vector3().setComponent(parts.indexOf(Math.min(...parts)), 1);
   const u = helper.addScaledVector(axis, -helper.dot(axis)).normalize();

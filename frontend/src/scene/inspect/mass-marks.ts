@@ -1,7 +1,7 @@
 import { BufferAttribute, Matrix4, Quaternion, Vector3, type BufferGeometry, type Object3D } from "three";
 import type { LinkInertia } from "../../protocol";
 import { CopyBatch } from "../objects/copy-batch";
-import { ballGeometry, cubeGeometry } from "../objects/geometries";
+import { sphereGeometry, cubeGeometry } from "../objects/geometries";
 import { LabelBatch } from "../objects/label-batch";
 import { linkPose, type InspectedRobot } from "./inspected-robot";
 import { VertexStream } from "./vertex-stream";
@@ -10,37 +10,40 @@ const PLAUSIBLE = 0x4da3ff;
 const IMPLAUSIBLE = 0xff4d42;
 const TOTAL = 0xffd23c;
 const BOX_ALPHA = 0.3;
-/** Diameters of marks in units of the robot's mark size. */
-const BALL = 0.16;
-const TOTAL_BALL = 0.3;
-const LABEL = 0.2;
-/** An ellipsoid with the inertia of a box has semi-axes of this part of the box's edges: m/5 (b² + c²) = m/12 (B² + C²). */
+/** Sizes of marks in units of the robot's mark size. */
+const BALL_SIZE = 0.16;
+const TOTAL_BALL_SIZE = 0.3;
+const LABEL_SIZE = 0.2;
+/**
+ * An ellipsoid with the inertia of a box has semi-axes of this share of the box's edges: m/5 (b² + c²) = m/12 (B² +
+ * C²).
+ */
 const ELLIPSOID = Math.sqrt(5 / 12);
-/** Corners of a cube of one metre that its edges join. */
+/** The corners of a unit cube, in pairs that form its edges. */
 const EDGES = cubeEdges();
 
-/** The marks to be drawn. */
+/** The kinds of marks to draw. */
 export interface MassMarkChoice {
   centers: boolean;
   boxes: boolean;
   ellipsoids: boolean;
 }
 
-/** Centres of mass as balls in black and white, inertias as boxes and ellipsoids; implausible ones are red. */
+/** Centres of mass as balls in black and white, and inertias as boxes and ellipsoids; implausible ones are red. */
 export class MassMarks {
   private readonly balls: CopyBatch;
   private readonly boxes: CopyBatch;
   private readonly ellipsoids: CopyBatch;
   private readonly edges: VertexStream;
   private readonly labels = new LabelBatch();
-  /** Of the whole robots, in the fixed frame. */
+  /** The centres of mass of whole robots, in the fixed frame. */
   private totals: Vector3[] = [];
 
   constructor(parent: Object3D) {
     this.boxes = new CopyBatch(parent, cubeGeometry(), { isOverlay: true });
-    this.ellipsoids = new CopyBatch(parent, ballGeometry(24), { isOverlay: true });
+    this.ellipsoids = new CopyBatch(parent, sphereGeometry(24), { isOverlay: true });
     this.edges = new VertexStream(parent, "lines");
-    this.balls = new CopyBatch(parent, quartered(ballGeometry(16)), { isOverlay: true });
+    this.balls = new CopyBatch(parent, paintQuarters(sphereGeometry(16)), { isOverlay: true });
     parent.add(this.labels.root);
   }
 
@@ -76,7 +79,7 @@ export class MassMarks {
       const implausible = robot.implausible.has(link.name);
       const { inertia } = link;
       center.fromArray(inertia?.center ?? [0, 0, 0]).applyMatrix4(pose);
-      if (implausible) this.labels.add(`! ${link.name}`, center, LABEL * robot.unit, 0, 1);
+      if (implausible) this.labels.add(`! ${link.name}`, center, LABEL_SIZE * robot.unit, 0, 1);
       if (!inertia) continue;
       this.markLink(inertia, pose, center, implausible ? IMPLAUSIBLE : PLAUSIBLE, robot.unit, choice);
       sum.addScaledVector(center, inertia.mass);
@@ -85,7 +88,7 @@ export class MassMarks {
     if (!(mass > 0) || !choice.centers) return;
     const total = sum.divideScalar(mass);
     this.totals.push(total);
-    this.balls.add(sized(pose.identity().setPosition(total), TOTAL_BALL * robot.unit), 0, 1, TOTAL);
+    this.balls.add(sized(pose.identity().setPosition(total), TOTAL_BALL_SIZE * robot.unit), 0, 1, TOTAL);
   }
 
   private markLink(
@@ -98,7 +101,7 @@ export class MassMarks {
   ): void {
     if (choice.centers && inertia.mass !== 0) {
       const look = color === PLAUSIBLE ? 0xffffff : color;
-      this.balls.add(sized(pose.clone().setPosition(center), BALL * unit), 0, 1, look);
+      this.balls.add(sized(pose.clone().setPosition(center), BALL_SIZE * unit), 0, 1, look);
     }
     const [a = 0, b = 0, c = 0] = inertia.box;
     if (inertia.box.length === 0) return;
@@ -112,7 +115,7 @@ export class MassMarks {
       this.edges.setLook(color);
       this.edges.add(...EDGES.map((corner) => corner.clone().applyMatrix4(box)));
     }
-    // Its diameters are twice the semi-axes; the ball that is scaled has a diameter of one.
+    // The diameters are twice the semi-axes, and the ball that is scaled has a diameter of one.
     if (choice.ellipsoids) this.ellipsoids.add(axes.scale(size.multiplyScalar(2 * ELLIPSOID)), 0, BOX_ALPHA, color);
   }
 }
@@ -127,8 +130,8 @@ function turned(x: number, y: number, z: number, w: number): Matrix4 {
   return new Matrix4().makeRotationFromQuaternion(new Quaternion(x, y, z, w));
 }
 
-/** Paints a ball as centres of mass are drawn on paper: quarters in black and white. */
-function quartered(ball: BufferGeometry): BufferGeometry {
+/** Paints a ball with the symbol of a centre of mass: quarters in black and white. */
+function paintQuarters(ball: BufferGeometry): BufferGeometry {
   const flat = ball.toNonIndexed();
   const [positions, colors] = [flat.getAttribute("position"), flat.getAttribute("color")];
   for (let i = 0; i < positions.count; i += 3) {

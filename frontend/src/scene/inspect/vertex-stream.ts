@@ -13,10 +13,10 @@ import {
 } from "three";
 
 const FIRST_CAPACITY = 256;
-/** After the robot, before labels. */
+/** Marks are drawn after the robot and before labels. */
 const RENDER_ORDER = 6;
 
-/** Lines or triangles that are other ones in every frame, unlit and drawn over everything, in one draw call. */
+/** Lines or triangles that change in every frame, unlit and drawn over everything, in one draw call. */
 export class VertexStream {
   private readonly object: LineSegments | Mesh;
   private positions = new Float32Array(FIRST_CAPACITY * 3);
@@ -39,7 +39,7 @@ export class VertexStream {
     parent.add(this.object);
   }
 
-  /** Vertices drawn now. */
+  /** The number of vertices drawn now. */
   get size(): number {
     return this.count;
   }
@@ -48,7 +48,7 @@ export class VertexStream {
     this.count = 0;
   }
 
-  /** Sets the look of the vertices after this; `color` is 0xrrggbb. */
+  /** Sets the look of the vertices added from now on; `color` is 0xrrggbb. */
   setLook(color: number, alpha = 1): void {
     this.color.setHex(color);
     this.alpha = alpha;
@@ -86,7 +86,7 @@ export class VertexStream {
   }
 
   private allocate(): void {
-    // A buffer on the GPU keeps its size: a larger one needs a geometry of its own.
+    // A buffer on the GPU cannot grow: a larger one needs a new geometry.
     this.object.geometry.dispose();
     this.object.geometry = new BufferGeometry()
       .setAttribute("position", new BufferAttribute(this.positions, 3).setUsage(DynamicDrawUsage))

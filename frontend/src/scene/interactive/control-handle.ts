@@ -17,21 +17,21 @@ import { isSolid, SolidMarkers, surfacesOf } from "../markers/solid-markers";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { poseMatrix } from "../pose";
 
-/** What the mouse is over is this much brighter. */
-const BRIGHTER = 1.4;
-const LIGHTER = 0.15;
+/** The factor and offset by which the colours of a control under the pointer are brightened. */
+const BRIGHTNESS_FACTOR = 1.4;
+const BRIGHTNESS_OFFSET = 0.15;
 
-/** One control of an interactive marker: its markers, and how it is turned. */
+/** A control of an interactive marker: its markers and its orientation. */
 export class ControlHandle {
-  /** In the marker's reference frame. */
+  /** The group of its markers, in the marker's reference frame. */
   readonly root = new Group();
-  /** Turned by the user about its own axis since it came, rad; only `fixed` controls keep that. */
+  /** The angle by which the user has turned the control about its own axis, rad; only `fixed` controls keep it. */
   rotation = 0;
   private readonly solids = new SolidMarkers(this.root);
   private readonly objects: MarkerObject[] = [];
   private readonly own: Quaternion;
   private readonly framed = new Quaternion();
-  private bright = false;
+  private isHighlighted = false;
 
   constructor(
     readonly control: InteractiveControl,
@@ -51,7 +51,7 @@ export class ControlHandle {
     this.arrangeSolids();
   }
 
-  /** Whether it is more than something to look at. */
+  /** Whether the control reacts to the mouse. */
   get isActive(): boolean {
     return this.control.mode !== "none";
   }
@@ -60,31 +60,34 @@ export class ControlHandle {
     return this.objects.every((object) => object.settled);
   }
 
-  /** With its axis as x, in the reference frame. */
+  /** The orientation in the reference frame, with the control's axis as x. */
   get orientation(): Quaternion {
     return this.framed.clone().multiply(this.own);
   }
 
   set highlighted(bright: boolean) {
-    if (bright === this.bright) return;
-    this.bright = bright;
+    if (bright === this.isHighlighted) return;
+    this.isHighlighted = bright;
     this.arrangeSolids();
     for (const { root } of this.objects) root.traverse((object) => brighten(object, bright));
   }
 
-  /** Puts it where its marker is; `camera` and `reference` (of the marker's frame) turn what faces the viewer. */
+  /**
+   * Moves the control to its marker's pose; `camera` and `reference` (the pose of the marker's frame) orient controls
+   * that face the viewer.
+   */
   place(position: Vector3, orientation: Quaternion, camera: Camera, reference: Matrix4): void {
     this.root.position.copy(position);
     const mode = this.control.orientation_mode;
     if (mode === "inherit") this.framed.copy(orientation);
     else if (mode === "fixed") {
       this.framed.setFromAxisAngle(new Vector3(1, 0, 0).applyQuaternion(this.own), this.rotation);
-    } else this.framed.copy(facing(this.own, camera, reference));
+    } else this.framed.copy(facingOrientation(this.own, camera, reference));
     const independent = mode === "view_facing" && this.control.independent_orientation;
     this.root.quaternion.copy(independent ? orientation : this.framed);
   }
 
-  /** The intersection of a ray, in the world, with its markers. */
+  /** Returns the intersection of a ray with its markers, in the fixed frame. */
   hit(ray: Raycaster): Intersection | null {
     this.root.updateWorldMatrix(true, true);
     const objects: Object3D[] = this.objects.map((object) => object.root);
@@ -104,8 +107,8 @@ export class ControlHandle {
     this.solids.begin();
     for (const marker of this.control.markers) {
       if (!isSolid(marker.shape)) continue;
-      const lit = marker.color.map((each, i) => (i < 3 ? Math.min(1, each * BRIGHTER + LIGHTER) : each));
-      this.solids.add({ ...marker, color: this.bright ? lit : marker.color }, poseOf(marker));
+      const lit = marker.color.map((each, i) => (i < 3 ? Math.min(1, each * BRIGHTNESS_FACTOR + BRIGHTNESS_OFFSET) : each));
+      this.solids.add({ ...marker, color: this.isHighlighted ? lit : marker.color }, poseOf(marker));
     }
     this.solids.end();
   }
@@ -119,18 +122,21 @@ function brighten(object: Object3D, bright: boolean): void {
   const material = (object as Partial<Mesh>).material;
   const materials: readonly Material[] = material ? [material].flat() : [];
   for (const each of materials) {
-    if ("color" in each && each.color instanceof Color) each.color.multiplyScalar(bright ? BRIGHTER : 1 / BRIGHTER);
+    if ("color" in each && each.color instanceof Color) each.color.multiplyScalar(bright ? BRIGHTNESS_FACTOR : 1 / BRIGHTNESS_FACTOR);
   }
 }
 
-/** Turns the control's axis along the line of sight and its z up, as RViz does with controls that face the viewer. */
-function facing(own: Quaternion, camera: Camera, reference: Matrix4): Quaternion {
+/**
+ * Returns the orientation that turns the control's axis along the line of sight and its z up, as RViz does for controls
+ * that face the viewer.
+ */
+function facingOrientation(own: Quaternion, camera: Camera, reference: Matrix4): Quaternion {
   const view = new Quaternion().setFromRotationMatrix(camera.matrixWorld);
   const forward = new Vector3(0, 0, -1).applyQuaternion(view);
   const up = new Vector3(0, 1, 0).applyQuaternion(view);
   const toView = new Quaternion().setFromUnitVectors(new Vector3(1, 0, 0).applyQuaternion(own), forward);
   const z = new Vector3(0, 0, 1).applyQuaternion(own).applyQuaternion(toView);
-  const upright = new Quaternion().setFromUnitVectors(z.projectOnPlane(forward).normalize(), up);
+  const toUpright = new Quaternion().setFromUnitVectors(z.projectOnPlane(forward).normalize(), up);
   const frame = new Quaternion().setFromRotationMatrix(reference);
-  return frame.invert().multiply(upright.multiply(toView));
+  return frame.invert().multiply(toUpright.multiply(toView));
 }

@@ -7,38 +7,40 @@ export interface MarkerPose {
   orientation: Quaternion;
 }
 
-/** The movement of the mouse; everything in the marker's reference frame. */
+/** A movement of the mouse; all vectors are in the marker's reference frame. */
 export interface DragEvent {
-  /** From the camera through the pointer. */
+  /** The ray from the camera through the pointer. */
   ray: Ray;
-  /** Pixels since the last event. */
+  /** The movement since the last event, pixels. */
   dx: number;
   dy: number;
   shift: boolean;
   ctrl: boolean;
-  /** The camera's axes, unit length. */
+  /** The axes of the camera, unit vectors. */
   right: Vector3;
   up: Vector3;
   forward: Vector3;
 }
 
 const PIXELS_PER_TURN = 300;
-/** Metres along the line of sight for each pixel, for each metre between the camera and the marker. */
+/** Metres along the line of sight for each pixel and for each metre between the camera and the marker. */
 const DEPTH_PER_PIXEL = 0.002;
-/** A plane that is seen this close to its edge cannot be pointed at. */
-const SHALLOWEST = 0.05;
+/**
+ * The minimum sine of the angle between a ray and a plane; at smaller angles the pointer gives no reliable position.
+ */
+const MIN_PLANE_SINE = 0.05;
 
-/** One control of an interactive marker being dragged, with the rules of RViz's InteractiveMarkerControl. */
+/** A drag of an interactive marker's control, by the rules of RViz's InteractiveMarkerControl. */
 export class Drag {
   private readonly start: MarkerPose;
   private readonly grabbed: Vector3;
-  /** Of the control, at the beginning: move along it, turn about it. */
+  /** The control's axis at the start of the drag: the direction of motion, or the axis of rotation. */
   private readonly axis: Vector3;
   private readonly pose: MarkerPose;
 
   /**
-   * `grab` is where the control was taken, `orientation` the control's, with the x axis as its axis; both in the
-   * reference frame.
+   * `grab` is the point where the control was grabbed, `orientation` the control's orientation, whose x axis is the
+   * control's axis; both in the reference frame.
    */
   constructor(
     private readonly mode: InteractiveControl["mode"],
@@ -52,8 +54,8 @@ export class Drag {
     this.axis = new Vector3(1, 0, 0).applyQuaternion(orientation).normalize();
   }
 
-  /** The marker's pose after a movement of the mouse; null where it cannot be said. */
-  moved(event: DragEvent): MarkerPose | null {
+  /** Returns the marker's pose after a movement of the mouse; null if the movement does not define one. */
+  poseAfter(event: DragEvent): MarkerPose | null {
     const done = this.move(event);
     return done ? copyOf(this.pose) : null;
   }
@@ -89,31 +91,31 @@ export class Drag {
   }
 
   private moveInPlane(ray: Ray, normal: Vector3): boolean {
-    const at = onPlane(ray, this.grabbed, normal);
+    const at = pointOnPlane(ray, this.grabbed, normal);
     if (!at) return false;
     this.pose.position.copy(at).sub(this.grabbed).add(this.start.position);
     return true;
   }
 
   private turnAboutAxis(ray: Ray): boolean {
-    const center = this.foot(this.start.position);
-    const at = onPlane(ray, center, this.axis);
+    const center = this.nearestOnAxis(this.start.position);
+    const at = pointOnPlane(ray, center, this.axis);
     if (!at) return false;
-    const turn = turnBetween(this.grabbed.clone().sub(center), at.sub(center), this.axis);
+    const turn = rotationBetween(this.grabbed.clone().sub(center), at.sub(center), this.axis);
     this.pose.orientation.copy(turn).multiply(this.start.orientation);
     return true;
   }
 
   /** Moves and turns the marker like a cart on a string: the grabbed point follows the mouse. */
   private moveAndTurn(ray: Ray): boolean {
-    const center = this.foot(this.pose.position);
-    const at = onPlane(ray, center, this.axis);
+    const center = this.nearestOnAxis(this.pose.position);
+    const at = pointOnPlane(ray, center, this.axis);
     if (!at) return false;
     const arm = this.grabbed.clone().sub(center);
     const reach = at.clone().sub(center);
     const distance = reach.length();
     if (distance === 0) return false;
-    this.pose.orientation.premultiply(turnBetween(arm, reach, this.axis));
+    this.pose.orientation.premultiply(rotationBetween(arm, reach, this.axis));
     this.pose.position.addScaledVector(reach, (distance - arm.length()) / distance);
     this.grabbed.copy(at);
     return true;
@@ -122,7 +124,7 @@ export class Drag {
   private moveFreely(event: DragEvent): boolean {
     if (!event.shift) return this.moveInPlane(event.ray, event.forward);
     const distance = event.ray.origin.distanceTo(this.pose.position);
-    const step = -dominant(-event.dx, event.dy) * DEPTH_PER_PIXEL * distance;
+    const step = -larger(-event.dx, event.dy) * DEPTH_PER_PIXEL * distance;
     for (const point of [this.pose.position, this.start.position, this.grabbed]) {
       point.addScaledVector(event.ray.direction, step);
     }
@@ -132,7 +134,7 @@ export class Drag {
   private turnFreely(event: DragEvent): boolean {
     const angle = (pixels: number): number => (pixels / PIXELS_PER_TURN) * 2 * Math.PI;
     const turn = new Quaternion();
-    if (event.shift) turn.setFromAxisAngle(event.forward, angle(dominant(event.dx, event.dy)));
+    if (event.shift) turn.setFromAxisAngle(event.forward, angle(larger(event.dx, event.dy)));
     else {
       turn.setFromAxisAngle(event.up, angle(event.dx));
       turn.multiply(new Quaternion().setFromAxisAngle(event.right, angle(event.dy)));
@@ -141,8 +143,8 @@ export class Drag {
     return true;
   }
 
-  /** The point of the axis through `origin` that is nearest to the grabbed point. */
-  private foot(origin: Vector3): Vector3 {
+  /** Returns the point of the axis through `origin` that is nearest to the grabbed point. */
+  private nearestOnAxis(origin: Vector3): Vector3 {
     const along = this.grabbed.clone().sub(origin).dot(this.axis);
     return origin.clone().addScaledVector(this.axis, along);
   }
@@ -152,7 +154,7 @@ function copyOf(pose: MarkerPose): MarkerPose {
   return { position: pose.position.clone(), orientation: pose.orientation.clone() };
 }
 
-/** The distance along the axis through `origin` at which the ray passes nearest; null where they are parallel. */
+/** Returns the distance along the axis through `origin` to the point nearest to the ray; null if they are parallel. */
 export function alongAxis(ray: Ray, origin: Vector3, axis: Vector3): number | null {
   const between = origin.clone().sub(ray.origin);
   const slant = axis.dot(ray.direction);
@@ -161,19 +163,19 @@ export function alongAxis(ray: Ray, origin: Vector3, axis: Vector3): number | nu
   return (slant * between.dot(ray.direction) - between.dot(axis)) / sine2;
 }
 
-function onPlane(ray: Ray, point: Vector3, normal: Vector3): Vector3 | null {
-  if (Math.abs(normal.dot(ray.direction)) < SHALLOWEST) return null;
+function pointOnPlane(ray: Ray, point: Vector3, normal: Vector3): Vector3 | null {
+  if (Math.abs(normal.dot(ray.direction)) < MIN_PLANE_SINE) return null;
   return ray.intersectPlane(new Plane().setFromNormalAndCoplanarPoint(normal, point), new Vector3());
 }
 
-/** The turn about `axis` that takes the direction `from` to `to`. */
-export function turnBetween(from: Vector3, to: Vector3, axis: Vector3): Quaternion {
+/** Returns the rotation about `axis` from the direction `from` to the direction `to`. */
+export function rotationBetween(from: Vector3, to: Vector3, axis: Vector3): Quaternion {
   const [a, b] = [from, to].map((each) => each.clone().projectOnPlane(axis));
   if (!a || !b) return new Quaternion();
   const angle = Math.atan2(axis.dot(a.clone().cross(b)), a.dot(b));
   return new Quaternion().setFromAxisAngle(axis, angle);
 }
 
-function dominant(a: number, b: number): number {
+function larger(a: number, b: number): number {
   return Math.abs(a) > Math.abs(b) ? a : b;
 }

@@ -13,21 +13,24 @@ import { VisualAid } from "./visual-aid";
 
 const AXES_LENGTH = 1;
 const AXES_RADIUS = 0.05;
-/** Of a description's letters and its height above the marker, in parts of the marker's scale. */
+/**
+ * The height of a description's letters, and the height of the description above the marker, relative to the marker's
+ * scale.
+ */
 const TITLE_HEIGHT = 0.15;
 const TITLE_ABOVE = 1.4;
 
-/** The values of the display's boxes. */
+/** The display's options. */
 export interface MarkerOptions {
   descriptions: boolean;
   axes: boolean;
-  /** The line that a control is dragged along, or turned about, shows. */
+  /** Whether to show the line along which a control is dragged, or about which it is turned. */
   aids: boolean;
-  /** The Interact tool is in hand: controls that are not always visible show. */
+  /** Whether the Interact tool is active, so that controls which are not always visible are shown. */
   interactive: boolean;
 }
 
-/** One interactive marker: its controls, its title, and what is done to it with the mouse. */
+/** An interactive marker: its controls, its title, and the drag in progress. */
 export class MarkerHandle {
   readonly root = new Group();
   readonly controls: readonly ControlHandle[];
@@ -60,8 +63,8 @@ export class MarkerHandle {
     return this.drag !== null;
   }
 
-  /** Whether the line is drawn that a control is dragged along, or turned about. */
-  get isAided(): boolean {
+  /** Whether the line of the dragged control is shown. */
+  get isAidShown(): boolean {
     return this.aid.shown;
   }
 
@@ -69,19 +72,19 @@ export class MarkerHandle {
     return this.controls.every((control) => control.settled);
   }
 
-  /** The pose in the marker's frame, as messages have it. */
+  /** The pose in the marker's frame, in the order of messages. */
   get values(): number[] {
     const { position, orientation } = this.pose;
     return [...position.toArray(), ...orientation.toArray()];
   }
 
-  /** The server moves it; while the user holds it, its pose is the user's. */
+  /** Applies a pose from the server, except while the user drags the marker. */
   move(data: DisplayData, pose: readonly number[]): void {
     this.data = data;
     if (!this.drag) this.setPose(pose);
   }
 
-  /** Puts everything where it is now; false where its frame has no transform. */
+  /** Updates the poses of its objects; returns false if its frame has no transform. */
   update(frames: FrameStore, camera: Camera, options: MarkerOptions): boolean {
     const placed = dataPose(frames, this.data, this.frame.matrix);
     this.root.visible = placed;
@@ -105,7 +108,7 @@ export class MarkerHandle {
     return true;
   }
 
-  /** The nearest control that a ray of the world meets. */
+  /** Returns the nearest control that a ray in the fixed frame hits. */
   hit(ray: Raycaster): { control: number; distance: number; point: Vector3 } | null {
     let best: { control: number; distance: number; point: Vector3 } | null = null;
     this.controls.forEach((control, number) => {
@@ -117,20 +120,20 @@ export class MarkerHandle {
     return best;
   }
 
-  /** Takes a control in hand at a point of the world. */
+  /** Starts dragging a control at a point in the fixed frame. */
   grab(control: ControlHandle, point: Vector3): void {
     const at = point.clone().applyMatrix4(this.inverse());
     this.grabbed = at;
     this.drag = { drag: new Drag(control.control.mode, this.pose, at, control.orientation), control };
   }
 
-  /** Follows the mouse; true when the marker moved. */
+  /** Follows the mouse; returns true if the marker moved. */
   follow(event: ScenePointer, camera: Camera): boolean {
     if (!this.drag) return false;
     const inverse = this.inverse();
     const ray = event.ray.ray.clone().applyMatrix4(inverse);
     const turn = new Quaternion().setFromRotationMatrix(inverse.clone().multiply(camera.matrixWorld));
-    const moved = this.drag.drag.moved({
+    const moved = this.drag.drag.poseAfter({
       ray: new Ray(ray.origin, ray.direction.normalize()),
       dx: event.dx,
       dy: event.dy,
@@ -146,11 +149,11 @@ export class MarkerHandle {
     return true;
   }
 
-  letGo(): void {
+  release(): void {
     this.drag = null;
   }
 
-  /** The feedback to the server about a control. */
+  /** Returns the feedback message for an event of a control. */
   feedback(control: ControlHandle, event: MarkerFeedback["event"], menuEntry = 0): MarkerFeedback {
     return {
       type: "marker_feedback",

@@ -2,7 +2,7 @@ import type { Object3D, Quaternion, Vector3 } from "three";
 import type { InteractiveControl } from "../../protocol";
 import { ThinLines } from "../objects/thin-lines";
 
-/** To both sides, m. */
+/** The length of the line to each side, m. */
 const REACH = 1000;
 const MODES: ReadonlySet<InteractiveControl["mode"]> = new Set<InteractiveControl["mode"]>([
   "move_axis",
@@ -10,7 +10,7 @@ const MODES: ReadonlySet<InteractiveControl["mode"]> = new Set<InteractiveContro
   "move_rotate",
 ]);
 
-/** RViz's visual aid: while a control is dragged, the line along which it moves or about which it turns. */
+/** RViz's visual aid: the line along which a dragged control moves, or about which it turns. */
 export class VisualAid {
   private line: ThinLines | null = null;
 
@@ -20,7 +20,7 @@ export class VisualAid {
     return this.line !== null && this.line.root.parent !== null;
   }
 
-  /** Shows the line of a control that has one; `orientation` has the control's axis as x. */
+  /** Shows the line of a control, if its mode has one; the x axis of `orientation` is the control's axis. */
   show(control: InteractiveControl, position: Vector3, orientation: Quaternion): void {
     this.hide();
     if (!MODES.has(control.mode) || control.orientation_mode === "view_facing") return;

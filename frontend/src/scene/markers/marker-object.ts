@@ -18,15 +18,15 @@ import { PointBatch } from "../objects/point-batch";
 import { WideLines } from "../objects/wide-lines";
 import { textSprite } from "./text-sprite";
 
-/** A marker that is an object of its own: lines, points, text, triangles or a mesh. */
+/** A marker with a three.js object of its own: lines, points, text, triangles or a mesh. */
 export interface MarkerObject {
   readonly root: Object3D;
-  /** False while its mesh or texture is being loaded. */
+  /** Whether its mesh and texture are loaded. */
   readonly settled: boolean;
   dispose(): void;
 }
 
-/** Makes the object of a marker; `changed` is called when something of it arrived later, with what failed or null. */
+/** Creates the object of a marker; `changed` is called when a mesh or texture has arrived, with the problem or null. */
 export function makeMarkerObject(
   marker: MarkerShape,
   meshes: MeshLibrary,
@@ -89,7 +89,7 @@ class TrianglesMarker implements MarkerObject {
       for (let i = 3; i < colors.length; i += 4) clear ||= (colors[i] ?? 1) < OPAQUE_FROM;
     }
     const look = { side: DoubleSide, transparent: clear, depthWrite: !clear, vertexColors: colors !== null };
-    // As in RViz, triangles with colours of their own are not lit.
+    // As in RViz, triangles with individual colours are not lit.
     const material = colors ? new MeshBasicMaterial(look) : new MeshLambertMaterial({ ...look, opacity: alpha });
     if (!colors && texture === null) material.color.setRGB(color[0] ?? 0, color[1] ?? 0, color[2] ?? 0);
     this.root = new Mesh(geometry, material);
@@ -179,7 +179,7 @@ class MeshMarker implements MarkerObject {
       problem = template.problem;
       if (!this.disposed) {
         for (const { geometry, materials } of template.parts) {
-          const own = materials.map((each) => this.paint(mesh.embedded ? each : null));
+          const own = materials.map((material) => this.paint(mesh.embedded ? material : null));
           this.materials.push(...own);
           const [only] = own;
           this.root.add(new Mesh(geometry, own.length === 1 && only ? only : own));
@@ -193,7 +193,10 @@ class MeshMarker implements MarkerObject {
     if (!this.disposed) changed(problem);
   }
 
-  /** RViz's rule: the marker's colour, which only tints materials of the mesh's own, and not at all when it is zero. */
+  /**
+   * Returns a material by RViz's rule: the marker's colour tints the mesh's own materials, and is ignored for them if
+   * it is all zero.
+   */
   private paint(own: OwnMaterial | null): Material {
     let [r = 0, g = 0, b = 0, a = 0] = this.marker.color;
     if (this.marker.mesh?.embedded === true && r === 0 && g === 0 && b === 0 && a === 0) r = g = b = a = 1;
@@ -212,7 +215,7 @@ class MeshMarker implements MarkerObject {
   }
 }
 
-/** Red, green, blue and alpha of each corner, when the marker has a colour for each corner or each triangle. */
+/** Returns red, green, blue and alpha of each vertex, if the marker has a colour for each vertex or each triangle. */
 function vertexColors({ points, colors, color }: MarkerShape): Float32Array | null {
   const corners = points.length / 3;
   const given = colors.length / 4;

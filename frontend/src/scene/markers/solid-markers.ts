@@ -5,12 +5,12 @@ import { alongX, ArrowBatch, type ArrowShape } from "../objects/arrow-batch";
 import { CopyBatch } from "../objects/copy-batch";
 import { paint, unitBox, unitCylinder, unitSphere } from "../objects/geometries";
 
-/** An arrow marker without points has these proportions, times its scale. */
+/** The proportions of an arrow marker without points, before its scale. */
 const ARROW: ArrowShape = { shaftLength: 0.77, shaftDiameter: 1, headLength: 0.23, headDiameter: 2 };
-/** Part of an arrow between points that is head when the marker does not say. */
-const HEAD = 0.23;
-const STRIP_HEAD = 0.25;
-/** Shapes of size one; spheres and cylinders have a radius of one. */
+/** The share of the head in an arrow between points, if the marker does not specify it. */
+const HEAD_SHARE = 0.23;
+const STRIP_HEAD_SHARE = 0.25;
+/** The unit shapes; spheres and cylinders have a radius of one, so that their scale must be halved. */
 const SHAPES: Readonly<Record<string, { geometry: BufferGeometry; half: readonly [boolean, boolean, boolean] }>> = {
   cube: { geometry: unitBox, half: [false, false, false] },
   sphere: { geometry: unitSphere, half: [true, true, true] },
@@ -32,7 +32,7 @@ export function isSolid(kind: MarkerShape["shape"]): boolean {
   return SOLID.has(kind);
 }
 
-/** One kind of shape, those that are seen through apart from the others, for only these write no depth. */
+/** The copies of one shape. Transparent ones are in a batch of their own, because they must not write depth. */
 class Solids {
   private readonly batches: { opaque: CopyBatch; clear: CopyBatch };
   private readonly copies: { matrix: Matrix4; alpha: number; color: number }[] = [];
@@ -80,7 +80,7 @@ interface Arrow {
   alpha: number;
 }
 
-/** Markers made of cubes, spheres, cylinders and arrows: all of them in a few draw calls. */
+/** Markers made of cubes, spheres, cylinders and arrows, drawn in a few calls. */
 export class SolidMarkers {
   private readonly solids: Record<"cube" | "sphere" | "cylinder", Solids>;
   private readonly opaqueArrows: ArrowBatch;
@@ -102,7 +102,7 @@ export class SolidMarkers {
     this.arrows.length = 0;
   }
 
-  /** `pose` of the marker in the parent's frame; it is kept, so it must not change. */
+  /** Adds a marker. `pose` is in the parent's frame; it is not copied, so it must not change. */
   add(marker: MarkerShape, pose: Matrix4): void {
     const { shape } = marker;
     if (shape === "arrow" || shape === "arrow_strip") this.arrows.push(...arrowsOf(marker, pose));
@@ -148,9 +148,9 @@ export class SolidMarkers {
   }
 }
 
-/** Objects with the surface of a marker, for picking and outlining; they are in no scene. */
+/** Returns objects with the surfaces of a marker, for picking and outlining; they are not part of a scene. */
 export function surfacesOf(marker: MarkerShape, pose: Matrix4): Mesh[] {
-  const made = (geometry: BufferGeometry, matrix: Matrix4): Mesh => {
+  const meshAt = (geometry: BufferGeometry, matrix: Matrix4): Mesh => {
     const mesh = new Mesh(geometry);
     mesh.matrixAutoUpdate = false;
     mesh.matrix.copy(matrix);
@@ -162,17 +162,17 @@ export function surfacesOf(marker: MarkerShape, pose: Matrix4): Mesh[] {
       const length = shape.shaftLength + shape.headLength;
       const width = Math.max(shape.shaftDiameter, shape.headDiameter);
       const box = new Matrix4().makeScale(length, width, width).setPosition(length / 2, 0, 0);
-      return made(unitBox, box.premultiply(at));
+      return meshAt(unitBox, box.premultiply(at));
     });
   }
   const list = marker.shape === "cube_list" || marker.shape === "sphere_list";
   const geometry = SHAPES[list ? marker.shape.slice(0, -"_list".length) : marker.shape]?.geometry ?? unitBox;
-  if (!list) return [made(geometry, sized(pose, marker))];
+  if (!list) return [meshAt(geometry, sized(pose, marker))];
   const shape = sized(new Matrix4(), marker);
   const meshes: Mesh[] = [];
   for (let i = 0; i < marker.points.length; i += 3) {
     const [x = 0, y = 0, z = 0] = marker.points.subarray(i, i + 3);
-    meshes.push(made(geometry, new Matrix4().makeTranslation(x, y, z).premultiply(pose).multiply(shape)));
+    meshes.push(meshAt(geometry, new Matrix4().makeTranslation(x, y, z).premultiply(pose).multiply(shape)));
   }
   return meshes;
 }
@@ -197,7 +197,7 @@ function arrowsOf(marker: MarkerShape, pose: Matrix4): Arrow[] {
     return [{ pose: pose.clone().multiply(new Matrix4().makeScale(x, y, z)), shape: ARROW, color, alpha }];
   }
   const [shaftDiameter = 0, headDiameter = 0, head = 0] = scale;
-  const part = marker.shape === "arrow" ? HEAD : STRIP_HEAD;
+  const part = marker.shape === "arrow" ? HEAD_SHARE : STRIP_HEAD_SHARE;
   const arrows: Arrow[] = [];
   for (let i = 0; i + 5 < points.length; i += 3) {
     const from = new Vector3().fromArray(points, i);

@@ -3,14 +3,14 @@ import { CanvasTexture, LinearFilter, NoColorSpace, Sprite, SpriteMaterial } fro
 const FONT_PX = 48;
 const LINE_PX = 58;
 const PADDING_PX = 6;
-/** Around letters, so that they are read on any ground: of the colour that contrasts with theirs. */
-const RIM_PX = 6;
-const RIMS = { dark: "rgba(12, 14, 18, 0.8)", light: "rgba(255, 255, 255, 0.85)" };
+/** The outline around letters, in a contrasting colour so that they are legible on any background. */
+const OUTLINE_PX = 6;
+const OUTLINES = { dark: "rgba(12, 14, 18, 0.8)", light: "rgba(255, 255, 255, 0.85)" };
 const LIGHT = 0.4;
-/** Longer texts would make textures that no GPU takes. */
-const WIDEST_PX = 4096;
+/** Pixels; larger textures would exceed the limit of GPUs. */
+const MAX_TEXTURE_PX = 4096;
 
-/** A text that faces the camera, its middle at the origin; `height` of a capital letter's line in metres. */
+/** Returns a text that faces the camera, centred at the origin; `height` is the height of a line, m. */
 export function textSprite(text: string, height: number, color: readonly number[]): Sprite {
   const [r = 1, g = 1, b = 1, a = 1] = color;
   const lines = text.split("\n");
@@ -19,13 +19,13 @@ export function textSprite(text: string, height: number, color: readonly number[
   const font = `${FONT_PX}px "Liberation Sans", Arial, "Noto Sans CJK SC", sans-serif`;
   if (context) context.font = font;
   const width = Math.max(1, ...lines.map((line) => context?.measureText(line).width ?? 1));
-  canvas.width = Math.min(WIDEST_PX, Math.ceil(width) + 2 * PADDING_PX);
-  canvas.height = Math.min(WIDEST_PX, lines.length * LINE_PX + 2 * PADDING_PX);
+  canvas.width = Math.min(MAX_TEXTURE_PX, Math.ceil(width) + 2 * PADDING_PX);
+  canvas.height = Math.min(MAX_TEXTURE_PX, lines.length * LINE_PX + 2 * PADDING_PX);
   if (context) {
     context.font = font;
     context.fillStyle = `rgb(${[r, g, b].map((each) => Math.round(255 * each)).join(" ")})`;
-    context.strokeStyle = 0.3 * r + 0.59 * g + 0.11 * b > LIGHT ? RIMS.dark : RIMS.light;
-    context.lineWidth = RIM_PX;
+    context.strokeStyle = 0.3 * r + 0.59 * g + 0.11 * b > LIGHT ? OUTLINES.dark : OUTLINES.light;
+    context.lineWidth = OUTLINE_PX;
     context.lineJoin = "round";
     context.textBaseline = "middle";
     context.textAlign = "center";

@@ -7,10 +7,10 @@ import { flatten, template, type MeshTemplate } from "./mesh-template";
 import { TextureWait } from "./texture-wait";
 
 /**
- * COLLADA. Its unit is applied; its up axis is not, for RViz tells Assimp to ignore it: what the file calls z is the
- * link's z.
+ * Reads COLLADA. Its unit is applied, but not its up axis, because RViz tells Assimp to ignore it: z in the file is z
+ * of the link.
  *
- * @throws MeshError when it is none.
+ * @throws MeshError if the file is not valid COLLADA.
  */
 export async function readCollada(data: ArrayBuffer, url: string, files: MeshFiles): Promise<MeshTemplate> {
   const written = new TextDecoder().decode(data).replace(/<up_axis>\s*\w+\s*<\/up_axis>/, "<up_axis>Y_UP</up_axis>");
@@ -19,40 +19,40 @@ export async function readCollada(data: ArrayBuffer, url: string, files: MeshFil
   const collada = new ColladaLoader(wait.manager).parse(text, LoaderUtils.extractUrlBase(url));
   if (!collada) throw new MeshError(strings.meshes.dae.notXml(""));
   const problem = await wait.settle();
-  // The loader's stand-in for a missing material is magenta and has no name.
+  // The loader replaces a missing material by a magenta one without a name.
   return template("DAE", flatten(collada.scene, (material) => material.name !== ""), problem);
 }
 
-/** The text as XML; the loader tells only the console where it failed. */
+/** Returns the text as valid XML. The loader itself reports errors only on the console. */
 function checkedXml(written: string): string {
   let text = written;
-  let xml = parsed(text);
-  const broken = fault(xml);
+  let xml = parseXml(text);
+  const broken = parserError(xml);
   if (broken) {
-    text = mended(written);
-    xml = parsed(text);
-    // Browsers report the error in words of their own; all of them have the line as their first number behind "line".
+    text = fixXml(written);
+    xml = parseXml(text);
+    // Browsers word the error differently, but all of them have the line as the first number after "line".
     const line = /line\D*(\d+)/i.exec(broken.textContent)?.[1] ?? "";
-    if (fault(xml)) throw new MeshError(strings.meshes.dae.notXml(line));
+    if (parserError(xml)) throw new MeshError(strings.meshes.dae.notXml(line));
   }
   const root = xml.documentElement.tagName;
   if (root.replace(/^.*:/, "") !== "COLLADA") throw new MeshError(strings.meshes.dae.root(root));
   return text;
 }
 
-function parsed(text: string): Document {
+function parseXml(text: string): Document {
   return new DOMParser().parseFromString(text, "application/xml");
 }
 
-function fault(xml: Document): Element | undefined {
+function parserError(xml: Document): Element | undefined {
   return xml.getElementsByTagName("parsererror")[0];
 }
 
 /**
- * The text without what XML forbids and the readers of RViz and Gazebo take: `<` and `&` in values, as in the
- * `<STL_BINARY>` that assimp names nodes by, hyphens in comments, no blank between attributes.
+ * Fixes what XML forbids but the readers of RViz and Gazebo accept: `<` and `&` in values, as in the node name
+ * `<STL_BINARY>` of assimp, hyphens in comments, and missing blanks between attributes.
  */
-export function mended(text: string): string {
+export function fixXml(text: string): string {
   return text
     .replace(/<!--[\s\S]*?-->/g, "")
     .replace(/&(?!#\d+;|#x[\da-f]+;|\w+;)/gi, "&amp;")

@@ -4,9 +4,9 @@ import type { MeshFiles } from "./mesh-files";
 import type { MeshTemplate } from "./mesh-template";
 
 /**
- * Reads a mesh file; each format's reader is fetched when the first such mesh comes.
+ * Reads a mesh file; the reader of a format is fetched with the first mesh of that format.
  *
- * @throws MeshError when it cannot be drawn.
+ * @throws MeshError if the mesh cannot be drawn.
  */
 export async function readMesh(data: ArrayBuffer, format: string, url: string, files: MeshFiles): Promise<MeshTemplate> {
   const read = READERS.get(format);

@@ -7,8 +7,8 @@ import { flatten, template, type MeshTemplate } from "./mesh-template";
 import { TextureWait } from "./texture-wait";
 
 const GLB_HEADER_BYTES = 12;
-/** Compressions that need a decoder of their own. */
-const NOT_READ = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu"];
+/** Extensions that are not supported, because they need decoders of their own. */
+const UNSUPPORTED = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu"];
 
 interface Head {
   asset?: { version?: string };
@@ -16,10 +16,10 @@ interface Head {
 }
 
 /**
- * glTF, text or binary: y up by its specification, turned to z up as RViz does.
+ * Reads glTF, text or binary. It has y up by its specification, and is turned to z up as in RViz.
  *
- * @param isBinary whether its name specifies binary; its first bytes decide.
- * @throws MeshError when it is none, or needs what is not read.
+ * @param isBinary - whether the file extension is that of binary glTF; the first bytes decide.
+ * @throws MeshError if the file is not glTF, or needs an unsupported extension.
  */
 export async function readGltf(data: ArrayBuffer, url: string, files: MeshFiles, isBinary: boolean): Promise<MeshTemplate> {
   checkHead(headOf(data, isBinary));
@@ -36,23 +36,23 @@ export async function readGltf(data: ArrayBuffer, url: string, files: MeshFiles,
 function headOf(data: ArrayBuffer, isBinary: boolean): Head {
   const words = strings.meshes.gltf;
   const magic = String.fromCharCode(...new Uint8Array(data, 0, Math.min(4, data.byteLength)));
-  return magic === "glTF" ? headOfGlb(data) : parsed(data, isBinary ? words.magic : words.notJson);
+  return magic === "glTF" ? headOfGlb(data) : parseHead(data, isBinary ? words.magic : words.notJson);
 }
 
-/** The JSON of a GLB, which is its first chunk. */
+/** Returns the JSON of a GLB file, which is its first chunk. */
 function headOfGlb(data: ArrayBuffer): Head {
   const words = strings.meshes.gltf;
   const view = new DataView(data);
-  const said = data.byteLength < GLB_HEADER_BYTES ? GLB_HEADER_BYTES : view.getUint32(8, true);
-  if (said > data.byteLength) throw new MeshError(words.length(countText(said), countText(data.byteLength)));
+  const statedLength = data.byteLength < GLB_HEADER_BYTES ? GLB_HEADER_BYTES : view.getUint32(8, true);
+  if (statedLength > data.byteLength) throw new MeshError(words.length(countText(statedLength), countText(data.byteLength)));
   const version = view.getUint32(4, true);
   if (version !== 2) throw new MeshError(words.version(String(version)));
   const length = data.byteLength < GLB_HEADER_BYTES + 8 ? 0 : view.getUint32(GLB_HEADER_BYTES, true);
   const start = GLB_HEADER_BYTES + 8;
-  return parsed(data.slice(start, start + length), words.notJson);
+  return parseHead(data.slice(start, start + length), words.notJson);
 }
 
-function parsed(json: ArrayBuffer, otherwise: string): Head {
+function parseHead(json: ArrayBuffer, otherwise: string): Head {
   try {
     return JSON.parse(new TextDecoder().decode(json)) as Head;
   } catch {
@@ -63,6 +63,6 @@ function parsed(json: ArrayBuffer, otherwise: string): Head {
 function checkHead(head: Head): void {
   const version = head.asset?.version ?? "1.0";
   if (!version.startsWith("2.")) throw new MeshError(strings.meshes.gltf.version(version));
-  const lacking = NOT_READ.filter((name) => head.extensionsRequired?.includes(name));
+  const lacking = UNSUPPORTED.filter((name) => head.extensionsRequired?.includes(name));
   if (lacking.length > 0) throw new MeshError(strings.meshes.gltf.extension(quoted(lacking)));
 }

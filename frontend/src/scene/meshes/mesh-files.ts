@@ -1,12 +1,12 @@
-/** The source of meshes, and of the files that they name. */
+/** The source of meshes and of the files that they refer to. */
 export interface MeshFiles {
-  /** The file with an address of the server. */
+  /** Fetches the file at an address of the server. */
   fetch(url: string): Promise<Response>;
-  /** The address that the browser loads for it. */
+  /** Returns the address from which the browser loads the file. */
   address(url: string): string;
 }
 
-/** The files of the server. It is asked every time whether the file is still the same. */
+/** The files of the server; each fetch checks whether the file has changed. */
 export const SERVED: MeshFiles = {
   fetch: (url) => fetch(url, { cache: "no-cache", credentials: "same-origin" }),
   address: (url) => url,

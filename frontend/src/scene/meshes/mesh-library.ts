@@ -6,18 +6,18 @@ import type { MeshTemplate } from "./mesh-template";
 import type { StandIns } from "./stand-ins";
 import { SharedTextures } from "./shared-textures";
 
-/** Browsers hold no longer text, and no graphics card takes so many triangles. */
-const MOST_BYTES = 500_000_000;
+/** Browsers support no longer strings, and no GPU draws so many triangles. */
+const MAX_BYTES = 500_000_000;
 
-interface Shelf {
-  /** What the server said identifies the file's content. */
+interface CachedMesh {
+  /** The file's ETag or date of modification. */
   version: string | null;
   template: MeshTemplate;
 }
 
-/** Loads mesh files, each once as long as the file does not change. */
+/** Loads mesh files, each only once while it does not change. */
 export class MeshLibrary {
-  private readonly shelves = new Map<string, Shelf>();
+  private readonly cache = new Map<string, CachedMesh>();
   private readonly loading = new Map<string, Promise<MeshTemplate>>();
 
   readonly textures = new SharedTextures();
@@ -25,15 +25,15 @@ export class MeshLibrary {
   constructor(
     private readonly progress: MeshProgress,
     readonly files: MeshFiles = SERVED,
-    /** What draws moving meshes with fewer triangles; null: nothing. */
+    /** Simplified versions of meshes for motion; null for none. */
     readonly standIns: StandIns | null = null,
   ) {}
 
   /**
-   * The mesh at `url`. Asks the server every time whether the file is still the same: a robot is loaded again when its
+   * Loads the mesh at `url`. Each call checks whether the file has changed, because a robot is loaded again after its
    * files were edited.
    *
-   * @throws MeshError with a part of a sentence for the user when the mesh cannot be drawn.
+   * @throws MeshError with a clause for the user if the mesh cannot be drawn.
    */
   load(url: string, format: string): Promise<MeshTemplate> {
     let promise = this.loading.get(url);
@@ -42,7 +42,7 @@ export class MeshLibrary {
       promise = this.fetch(url, format.replace(/^\./, "").toLowerCase(), report);
       this.loading.set(url, promise);
       const done = (): void => {
-        report.ended();
+        report.end();
         this.loading.delete(url);
       };
       promise.then(done, done);
@@ -51,46 +51,46 @@ export class MeshLibrary {
   }
 
   private async fetch(url: string, format: string, report: LoadReport): Promise<MeshTemplate> {
-    const response = await reached(this.files.fetch(url));
+    const response = await received(this.files.fetch(url));
     if (!response.ok) throw new MeshError(await refusal(response));
     const version = response.headers.get("ETag") ?? response.headers.get("Last-Modified");
-    const shelf = this.shelves.get(url);
+    const shelf = this.cache.get(url);
     if (shelf && version !== null && shelf.version === version) {
       void response.body?.cancel();
       return shelf.template;
     }
-    const data = await bytesOf(response, report);
+    const data = await readBytes(response, report);
     const { readMesh } = await import("./formats");
-    await report.reads();
+    await report.startReading();
     const template = await readMesh(data, format, new URL(url, document.baseURI).href, this.files);
-    // What is still being drawn of the old one goes back to the GPU by itself.
+    // three.js uploads an old geometry that is still being drawn again.
     for (const part of shelf?.template.parts ?? []) part.geometry.dispose();
-    this.shelves.set(url, { version, template });
+    this.cache.set(url, { version, template });
     return template;
   }
 }
 
-/** The data received over the line, or a text that the line broke. */
-async function reached<T>(answer: Promise<T>): Promise<T> {
+/** Waits for data from the server; a lost connection becomes a MeshError. */
+async function received<T>(answer: Promise<T>): Promise<T> {
   return answer.catch(() => {
     throw new MeshError(strings.meshes.lost);
   });
 }
 
-async function bytesOf(response: Response, report: LoadReport): Promise<ArrayBuffer> {
+async function readBytes(response: Response, report: LoadReport): Promise<ArrayBuffer> {
   const { headers } = response;
-  const said = Number(headers.get(headers.has("Content-Encoding") ? "X-Unpacked-Length" : "Content-Length") ?? NaN);
-  const total = Number.isFinite(said) ? said : null;
-  if (total !== null) limit(total);
+  const statedLength = Number(headers.get(headers.has("Content-Encoding") ? "X-Unpacked-Length" : "Content-Length") ?? NaN);
+  const total = Number.isFinite(statedLength) ? statedLength : null;
+  if (total !== null) checkSize(total);
   const reader = response.body?.getReader();
-  if (!reader) return reached(response.arrayBuffer());
+  if (!reader) return received(response.arrayBuffer());
   const chunks: Uint8Array[] = [];
   let bytes = 0;
-  for (let next = await reached(reader.read()); !next.done; next = await reached(reader.read())) {
+  for (let next = await received(reader.read()); !next.done; next = await received(reader.read())) {
     chunks.push(next.value);
     bytes += next.value.length;
-    limit(bytes);
-    report.came(bytes, total);
+    checkSize(bytes);
+    report.received(bytes, total);
   }
   const all = new Uint8Array(bytes);
   let at = 0;
@@ -101,15 +101,15 @@ async function bytesOf(response: Response, report: LoadReport): Promise<ArrayBuf
   return all.buffer;
 }
 
-function limit(bytes: number): void {
-  if (bytes > MOST_BYTES) throw new MeshError(strings.meshes.tooLarge(bytesText(bytes), bytesText(MOST_BYTES)));
+function checkSize(bytes: number): void {
+  if (bytes > MAX_BYTES) throw new MeshError(strings.meshes.tooLarge(bytesText(bytes), bytesText(MAX_BYTES)));
 }
 
-/** The server explains a refusal in plain text; its first line will do. */
+/** Returns the reason for a refusal: the first line of the server's plain text. */
 async function refusal(response: Response): Promise<string> {
   if (response.status === 404) return strings.meshes.gone;
   const plain = response.headers.get("Content-Type")?.startsWith("text/plain") ?? false;
-  const [line = ""] = plain ? (await reached(response.text())).trim().split("\n") : [];
+  const [line = ""] = plain ? (await received(response.text())).trim().split("\n") : [];
   return line !== "" ? line : strings.meshes.answered(`${response.status} ${response.statusText}`.trim());
 }
 

@@ -11,15 +11,15 @@ import {
 import { strings } from "../../strings";
 import { mapsOf, type Surface } from "../materials";
 import { MeshError } from "./mesh-error";
-import { collapseUnreal, unrealProblem, type Unreal } from "./mesh-numbers";
+import { collapseNonFinite, nonFiniteProblem, type NonFiniteCounts } from "./non-finite";
 
-/** A material that came with a mesh file. */
+/** A material of a mesh file. */
 export interface OwnMaterial {
   color: readonly [number, number, number];
   opacity: number;
   map: Texture | null;
   vertexColors: boolean;
-  /** How it reflects light, where the file specifies it. */
+  /** Its reflective properties, if the file specifies them. */
   surface?: Surface | null;
 }
 
@@ -27,53 +27,56 @@ export interface OwnMaterial {
 export interface MeshPart {
   geometry: BufferGeometry;
   materials: readonly (OwnMaterial | null)[];
-  /** What it and the nodes around it are called in the file. */
+  /** The names of the part and of the nodes around it in the file. */
   names?: readonly string[];
 }
 
-/** A mesh file as it is drawn: shared by every link that shows it. */
+/** A mesh file prepared for drawing, shared by all links that show it. */
 export interface MeshTemplate {
   parts: readonly MeshPart[];
   /** What is missing although the mesh can be drawn, such as a texture. */
   problem: string | null;
 }
 
-/** The grey that Assimp, and with it RViz, gives a mesh without a colour. */
+/** The grey that Assimp, and therefore RViz, gives a mesh without a colour. */
 export const UNCOLOURED_GREY = 0.6;
 
 /** The parts of a loaded mesh. */
 export interface Flattened {
   parts: MeshPart[];
-  /** Of each part. */
-  unreal: Unreal[];
+  /** The counts of non-finite vertices of each part. */
+  nonFinite: NonFiniteCounts[];
 }
 
-/** Flattens what a loader made, its textures being there. `isOwn` tells the materials of the file from those the loader made up. */
+/**
+ * Flattens the scene of a loader, whose textures must be loaded. `isOwn` distinguishes the file's materials from those
+ * that the loader added.
+ */
 export function flatten(root: Object3D, isOwn: (material: Material) => boolean): Flattened {
   root.updateMatrixWorld(true);
   const parts: MeshPart[] = [];
-  const unreal: Unreal[] = [];
+  const nonFinite: NonFiniteCounts[] = [];
   root.traverse((object) => {
     if (!(object instanceof Mesh)) return;
     const mesh = object as Mesh;
     const geometry = mesh.geometry.clone().applyMatrix4(mesh.matrixWorld);
-    unreal.push(collapseUnreal(geometry));
+    nonFinite.push(collapseNonFinite(geometry));
     if (!geometry.hasAttribute("normal")) geometry.computeVertexNormals();
     const materials = Array.isArray(mesh.material) ? mesh.material : [mesh.material];
     const own = materials.map((material) => (isOwn(material) ? ownMaterial(material) : null));
     parts.push({ geometry, materials: own, names: namesOf(object) });
   });
-  return { parts, unreal };
+  return { parts, nonFinite };
 }
 
 /**
- * The template of a file; `problem` is what is missing of it.
+ * Returns the template of a file; `problem` says what is missing from it.
  *
- * @throws MeshError when nothing of it can be drawn.
+ * @throws MeshError if nothing can be drawn.
  */
-export function template(format: string, { parts, unreal }: Flattened, problem: string | null): MeshTemplate {
-  if (unreal.every(({ ofTriangles }) => ofTriangles === 0)) throw new MeshError(strings.meshes.noFaces(format));
-  const problems = [problem, unrealProblem(unreal)].filter((each) => each !== null);
+export function template(format: string, { parts, nonFinite }: Flattened, problem: string | null): MeshTemplate {
+  if (nonFinite.every(({ ofTriangles }) => ofTriangles === 0)) throw new MeshError(strings.meshes.noFaces(format));
+  const problems = [problem, nonFiniteProblem(nonFinite)].filter((each) => each !== null);
   return { parts, problem: problems.join("; ") || null };
 }
 
@@ -85,7 +88,7 @@ function namesOf(object: Object3D): string[] {
 
 function ownMaterial(material: Material): OwnMaterial {
   const { color, map: texture } = material as Partial<MeshPhongMaterial>;
-  // A texture that did not come would be drawn as nothing at all.
+  // Omit a texture that is missing: the surface would not be drawn at all.
   const map = texture?.image ? texture : null;
   if (map) map.colorSpace = NoColorSpace;
   return {

@@ -8,9 +8,9 @@ import { flatten, template, type MeshTemplate } from "./mesh-template";
 import { TextureWait } from "./texture-wait";
 
 /**
- * Wavefront OBJ with its MTL files and their textures.
+ * Reads Wavefront OBJ with its MTL files and their textures.
  *
- * @throws MeshError when it is none.
+ * @throws MeshError if the file is not valid OBJ.
  */
 export async function readObj(data: ArrayBuffer, url: string, files: MeshFiles): Promise<MeshTemplate> {
   const text = new TextDecoder().decode(data);
@@ -37,7 +37,7 @@ export async function readObj(data: ArrayBuffer, url: string, files: MeshFiles):
   return template("OBJ", flatten(root, (material) => known.has(material.name)), problems.join("; ") || null);
 }
 
-/** The files named by `mtllib` lines. A name may contain spaces: one line, one file. */
+/** Returns the files named by `mtllib` lines. A name may contain spaces: each line names one file. */
 export function materialFiles(obj: string): string[] {
   return [...obj.matchAll(/^[ \t]*mtllib[ \t]+(.+?)[ \t]*\r?$/gm)].map((match) => match[1] ?? "");
 }

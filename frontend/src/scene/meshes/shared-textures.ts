@@ -6,21 +6,21 @@ interface Shared {
   users: number;
 }
 
-/** Textures by their addresses, each once on the graphics card however many shapes wear it. */
+/** Textures by address, each on the GPU only once however many shapes use it. */
 export class SharedTextures {
   private readonly shared = new Map<string, Shared>();
 
   constructor(private readonly load: (url: string) => Promise<Texture> = loadTexture) {}
 
-  /** The texture at `url`; the caller that takes it gives it back, also when it cannot be loaded. */
-  take(url: string): Promise<Texture> {
+  /** Returns the texture at `url`. The caller must release it with `release`, even if it cannot be loaded. */
+  acquire(url: string): Promise<Texture> {
     let known = this.shared.get(url);
     if (!known) this.shared.set(url, (known = { texture: this.load(url), users: 0 }));
     known.users++;
     return known.texture;
   }
 
-  giveBack(url: string): void {
+  release(url: string): void {
     const known = this.shared.get(url);
     if (!known || --known.users > 0) return;
     this.shared.delete(url);

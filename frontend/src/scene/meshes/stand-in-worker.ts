@@ -1,19 +1,19 @@
 import { MeshoptSimplifier } from "meshoptimizer/simplifier";
 import { standIn, type StandIn, type Triangles } from "./stand-in";
 
-/** The request of the page: a stand-in for each piece of a mesh. */
+/** The page's request: a stand-in for each piece of a mesh. */
 export interface StandInRequest {
   readonly id: number;
   readonly pieces: readonly Triangles[];
 }
 
-/** Null where one could not be made. */
+/** The answer; `standIns` is null if they could not be computed. */
 export interface StandInAnswer {
   readonly id: number;
   readonly standIns: readonly StandIn[] | null;
 }
 
-/** Of the worker's own scope, which TypeScript's types of pages do not know. */
+/** The worker's global scope, which TypeScript's DOM types do not cover. */
 const scope = globalThis as unknown as {
   onmessage: ((event: MessageEvent<StandInRequest>) => void) | null;
   postMessage: (answer: StandInAnswer, transfer: Transferable[]) => void;

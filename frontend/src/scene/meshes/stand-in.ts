@@ -3,40 +3,40 @@ import type { MeshoptSimplifier } from "meshoptimizer/simplifier";
 /** The part of meshoptimizer that is used. */
 export type Simplifier = Pick<typeof MeshoptSimplifier, "generatePositionRemap" | "simplifyWithAttributes" | "compactMesh" | "getScale">;
 
-/** Triangles with a normal at each corner: three corners in a row for each, or as the index says. */
+/** Triangles with a normal at each corner: three consecutive corners each, or by index. */
 export interface Triangles {
   readonly positions: Float32Array;
   readonly normals: Float32Array;
   readonly index: Uint32Array | null;
 }
 
-/** Some of the triangles; they differ from the mesh by about this at most, m. */
+/** A level of detail; it differs from the mesh by about `error` at most, m. */
 export interface StandInLevel {
   readonly error: number;
   readonly index: Uint32Array;
 }
 
-/** A mesh in fewer and fewer triangles, which share their vertices. */
+/** A mesh at several levels of detail, which share their vertices. */
 export interface StandIn {
   readonly positions: Float32Array;
   readonly normals: Float32Array;
-  /** From the finest, which has all triangles, to the coarsest. */
+  /** The levels from the finest, which has all triangles, to the coarsest. */
   readonly levels: readonly StandInLevel[];
-  /** A ball around it: x y z of its middle, radius. */
-  readonly ball: readonly [number, number, number, number];
+  /** The bounding sphere: x y z of its centre, radius. */
+  readonly sphere: readonly [number, number, number, number];
 }
 
-/** The most that a level may be off by, as shares of the mesh's size. */
-const STEPS = [0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1];
-/** A level must save this share of the triangles of the one before. */
-const WORTH = 0.2;
-/** How much a wrong normal counts, as a share of the mesh's size. */
+/** The maximum errors of the levels, as shares of the mesh's size. */
+const ERROR_STEPS = [0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1];
+/** A level must have at least this share of triangles fewer than the level before. */
+const MIN_SAVING = 0.2;
+/** The weight of errors in normals, as a share of the mesh's size. */
 const NORMAL_WEIGHT = 0.2;
-/** Corners in one place whose normals are at most this far apart share one vertex: the cosine of 30 degrees. */
-const SMOOTH = 0.866;
+/** Corners at one place share a vertex if the cosine between their normals is at least this: 30 degrees. */
+const MIN_COSINE = 0.866;
 const COMPONENTS = 3;
 
-/** Simplifies a mesh again and again, each time as far as an error allows. */
+/** Simplifies a mesh repeatedly, each time as far as an error permits. */
 export function standIn(mesh: Triangles, simplifier: Simplifier): StandIn {
   const { positions, normals, index } = weld(mesh, simplifier);
   const scale = positions.length > 0 ? simplifier.getScale(positions, COMPONENTS) : 0;
@@ -44,25 +44,30 @@ export function standIn(mesh: Triangles, simplifier: Simplifier): StandIn {
   const weights = [NORMAL_WEIGHT, NORMAL_WEIGHT, NORMAL_WEIGHT];
   let finest = index;
   let error = 0;
-  for (const step of STEPS) {
+  for (const step of ERROR_STEPS) {
     if (finest.length === 0) break;
     const [fewer, off] = simplifier.simplifyWithAttributes(
       finest, positions, COMPONENTS, normals, COMPONENTS, weights, null, 0, step, ["Prune"],
     );
-    if (fewer.length > (1 - WORTH) * finest.length) continue;
+    if (fewer.length > (1 - MIN_SAVING) * finest.length) continue;
     error += off * scale; // each starts where the one before ended
     levels.push({ error, index: fewer });
     finest = fewer;
   }
-  return { positions, normals, levels, ball: ballAround(positions) };
+  return { positions, normals, levels, sphere: boundingSphere(positions) };
 }
 
-/** Joins corners that are in one place and have like normals: exporters write each triangle by itself, and simplifying goes along what is joined. */
+/**
+ * Merges corners at the same place with similar normals. Exporters write each triangle separately, but simplification
+ * needs triangles that share vertices.
+ */
 function weld({ positions, normals, index }: Triangles, simplifier: Simplifier): { positions: Float32Array; normals: Float32Array; index: Uint32Array } {
   const place = simplifier.generatePositionRemap(positions, COMPONENTS);
   const corners = index?.length ?? positions.length / COMPONENTS;
   const joined = new Uint32Array(corners);
-  /** Of each place its newest vertex, and of each vertex the one before it there; one more than its number, 0 for none. */
+  /**
+   * The newest vertex at each place, and for each vertex the previous one at its place; numbers plus one, 0 for none.
+   */
   const [newest, before] = [new Uint32Array(place.length), new Uint32Array(corners)];
   const [at, sum] = [new Float32Array(corners * COMPONENTS), new Float32Array(corners * COMPONENTS)];
   const first = new Float32Array(corners * COMPONENTS);
@@ -75,7 +80,7 @@ function weld({ positions, normals, index }: Triangles, simplifier: Simplifier):
     const isUnlit = x === 0 && y === 0 && z === 0;
     while (found > 0 && !isUnlit) {
       const i = 3 * (found - 1);
-      if (x * (first[i] ?? 0) + y * (first[i + 1] ?? 0) + z * (first[i + 2] ?? 0) >= SMOOTH) break;
+      if (x * (first[i] ?? 0) + y * (first[i + 1] ?? 0) + z * (first[i + 2] ?? 0) >= MIN_COSINE) break;
       found = before[found - 1] ?? 0;
     }
     if (found === 0) {
@@ -95,26 +100,26 @@ function weld({ positions, normals, index }: Triangles, simplifier: Simplifier):
     const length = Math.hypot(sum[i] ?? 0, sum[i + 1] ?? 0, sum[i + 2] ?? 0) || 1;
     for (let j = i; j < i + 3; j++) sum[j] = (sum[j] ?? 0) / length;
   }
-  return { positions: at.slice(0, 3 * count), normals: sum.slice(0, 3 * count), index: withArea(joined) };
+  return { positions: at.slice(0, 3 * count), normals: sum.slice(0, 3 * count), index: withoutDegenerate(joined) };
 }
 
-/** Without the triangles of which two corners are one. */
-function withArea(index: Uint32Array): Uint32Array {
-  let kept = 0;
+/** Returns the triangles without those that have two equal corners. */
+function withoutDegenerate(index: Uint32Array): Uint32Array {
+  let length = 0;
   for (let i = 0; i + 2 < index.length; i += 3) {
     const [a = 0, b = 0, c = 0] = index.subarray(i, i + 3);
     if (a === b || b === c || c === a) continue;
-    index.set([a, b, c], kept);
-    kept += 3;
+    index.set([a, b, c], length);
+    length += 3;
   }
-  return index.slice(0, kept);
+  return index.slice(0, length);
 }
 
-function ballAround(positions: Float32Array): [number, number, number, number] {
+function boundingSphere(positions: Float32Array): [number, number, number, number] {
   const [least, most] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-  positions.forEach((each, i) => {
-    least[i % 3] = Math.min(least[i % 3] ?? each, each);
-    most[i % 3] = Math.max(most[i % 3] ?? each, each);
+  positions.forEach((position, i) => {
+    least[i % 3] = Math.min(least[i % 3] ?? position, position);
+    most[i % 3] = Math.max(most[i % 3] ?? position, position);
   });
   const middle = (axis: number): number => ((least[axis] ?? 0) + (most[axis] ?? 0)) / 2;
   const [x, y, z] = [middle(0), middle(1), middle(2)];

@@ -2,66 +2,72 @@ import type { BufferGeometry } from "three";
 import type { StandIn, Triangles } from "./stand-in";
 import type { StandInAnswer, StandInRequest } from "./stand-in-worker";
 
-/** Of larger meshes no copies are sent to a worker. */
-const MOST_CORNERS = 9_000_000;
+/** Larger meshes are not copied to a worker. */
+const MAX_CORNERS = 9_000_000;
 
-/** The `Worker` that makes stand-ins, as the page uses it. */
+/** The part of `Worker` that the page uses for stand-ins. */
 export interface StandInWorker {
   onmessage: ((event: MessageEvent<StandInAnswer>) => void) | null;
   onerror: ((event: ErrorEvent) => void) | null;
   postMessage(request: StandInRequest, transfer: Transferable[]): void;
 }
 
-/** Has stand-ins made for meshes, once a caller asks. The worker is not even loaded before. */
+/** Computes stand-ins of meshes on demand; the worker is loaded with the first request. */
 export class StandIns {
   private worker: StandInWorker | null = null;
-  private readonly made = new WeakMap<BufferGeometry, readonly StandIn[] | "waits" | "none">();
-  private readonly asked = new Map<number, BufferGeometry>();
+  private readonly results = new WeakMap<BufferGeometry, readonly StandIn[] | "waits" | "none">();
+  private readonly requests = new Map<number, BufferGeometry>();
   private count = 0;
 
   constructor(private readonly start: () => StandInWorker) {}
 
-  /** One for each group of a geometry, or for all of it; null: not yet. Empty where there is none. */
+  /**
+   * Returns the stand-ins of a geometry, one for each group or one for all of it; null until they are computed, empty
+   * if there are none.
+   */
   of(geometry: BufferGeometry): readonly StandIn[] | null {
-    const known = this.made.get(geometry);
-    if (known === undefined) this.ask(geometry);
+    const known = this.results.get(geometry);
+    if (known === undefined) this.request(geometry);
     return known === undefined || known === "waits" ? null : known === "none" ? [] : known;
   }
 
-  private ask(geometry: BufferGeometry): void {
+  private request(geometry: BufferGeometry): void {
     const pieces = piecesOf(geometry);
-    this.made.set(geometry, pieces ? "waits" : "none");
+    this.results.set(geometry, pieces ? "waits" : "none");
     if (!pieces) return;
-    this.worker ??= this.begin();
+    this.worker ??= this.startWorker();
     this.count += 1;
-    this.asked.set(this.count, geometry);
+    this.requests.set(this.count, geometry);
     const arrays = pieces.flatMap(({ positions, normals, index }) => [positions, normals, ...(index ? [index] : [])]);
     this.worker.postMessage({ id: this.count, pieces }, [...new Set(arrays.map(({ buffer }) => buffer as ArrayBuffer))]);
   }
 
-  private begin(): StandInWorker {
+  private startWorker(): StandInWorker {
     const worker = this.start();
-    worker.onmessage = ({ data: { id, standIns } }) => this.answered(id, standIns);
-    // A browser that does not let it run: everything is drawn as it is.
+    worker.onmessage = ({ data: { id, standIns } }) => this.onAnswer(id, standIns);
+    // If the browser does not run the worker, everything is drawn in full.
     worker.onerror = () => {
-      for (const id of [...this.asked.keys()]) this.answered(id, null);
+      for (const id of [...this.requests.keys()]) this.onAnswer(id, null);
     };
     return worker;
   }
 
-  private answered(id: number, standIns: readonly StandIn[] | null): void {
-    const geometry = this.asked.get(id);
-    this.asked.delete(id);
-    if (geometry) this.made.set(geometry, standIns ?? "none");
+  private onAnswer(id: number, standIns: readonly StandIn[] | null): void {
+    const geometry = this.requests.get(id);
+    this.requests.delete(id);
+    if (geometry) this.results.set(geometry, standIns ?? "none");
   }
 }
 
-/** Copies of the triangles of each group; null where they are too many or no plain triangles. */
+/**
+ * Returns copies of the triangles of each group; null if there are too many, or their attributes are not plain float
+ * arrays.
+ */
 function piecesOf(geometry: BufferGeometry): Triangles[] | null {
   const [position, normal] = [geometry.getAttribute("position"), geometry.getAttribute("normal")];
   const corners = geometry.index?.count ?? position.count;
   const isPlain = [position, normal].every((each) => each.itemSize === 3 && each.array instanceof Float32Array && !("data" in each));
-  if (!isPlain || corners > MOST_CORNERS || corners === 0) return null;
+  if (!isPlain || corners > MAX_CORNERS || corners === 0) return null;
   const all = geometry.index ? Uint32Array.from(geometry.index.array) : null;
   const [positions, normals] = [position.array as Float32Array, normal.array as Float32Array];
   const groups = geometry.groups.length > 0 ? geometry.groups : [{ start: 0, count: corners }];

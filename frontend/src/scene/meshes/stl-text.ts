@@ -1,14 +1,14 @@
 import { strings } from "../../strings";
 import { countText, MeshError } from "./mesh-error";
 
-/** Numbers that are none, as C's printf writes them in its dialects: nan, -nan(ind), inf, 1.#QNAN. */
-const UNREAL = /^[+-]?(nan|inf|\d\.#(ind|qnan|snan|inf))/i;
+/** NaN and infinity as the dialects of C's printf write them: nan, -nan(ind), inf, 1.#QNAN. */
+const NON_FINITE = /^[+-]?(nan|inf|\d\.#(ind|qnan|snan|inf))/i;
 
 /**
  * Reads an ASCII STL: `solid`, then `facet normal`, `outer loop`, three times `vertex`, `endloop`, `endfacet`.
  *
- * @returns x y z of three vertices for each triangle; NaN for a text that is not a finite number.
- * @throws MeshError with the line where it is broken.
+ * @returns x y z of three vertices for each triangle; NaN for a number that is not finite.
+ * @throws MeshError with the line of the error.
  */
 export function readAsciiStl(text: string): Float32Array {
   return new AsciiStl(text).read();
@@ -25,45 +25,45 @@ class AsciiStl {
     this.token.lastIndex = this.text.toLowerCase().indexOf("solid");
     for (let word = this.next(); word !== null; word = this.next()) {
       if (word === "solid" || word === "endsolid") this.skipLine();
-      else if (word === "facet") this.facet();
-      else throw this.broken(strings.meshes.stl.word(word.slice(0, 40), "'facet'"));
+      else if (word === "facet") this.readFacet();
+      else throw this.errorAt(strings.meshes.stl.word(word.slice(0, 40), "'facet'"));
     }
     return new Float32Array(this.positions);
   }
 
-  private facet(): void {
+  private readFacet(): void {
     this.expect("normal");
-    for (let i = 0; i < 3; i++) this.number();
+    for (let i = 0; i < 3; i++) this.readNumber();
     this.expect("outer");
     this.expect("loop");
     let count = 0;
-    let word = this.wanted("'vertex'");
-    for (; word === "vertex"; word = this.wanted("'endloop'")) {
-      for (let i = 0; i < 3; i++) this.positions.push(this.number());
+    let word = this.nextRequired("'vertex'");
+    for (; word === "vertex"; word = this.nextRequired("'endloop'")) {
+      for (let i = 0; i < 3; i++) this.positions.push(this.readNumber());
       count++;
     }
-    if (word !== "endloop") throw this.broken(strings.meshes.stl.word(word.slice(0, 40), "'vertex'"));
-    if (count !== 3) throw this.broken(strings.meshes.stl.corners(countText(count)));
+    if (word !== "endloop") throw this.errorAt(strings.meshes.stl.word(word.slice(0, 40), "'vertex'"));
+    if (count !== 3) throw this.errorAt(strings.meshes.stl.corners(countText(count)));
     this.expect("endfacet");
   }
 
-  private number(): number {
-    const word = this.wanted(strings.meshes.stl.number);
+  private readNumber(): number {
+    const word = this.nextRequired(strings.meshes.stl.number);
     const value = Number(word);
-    if (!Number.isNaN(value) || UNREAL.test(word)) return value;
-    throw this.broken(strings.meshes.stl.word(word.slice(0, 40), strings.meshes.stl.number));
+    if (!Number.isNaN(value) || NON_FINITE.test(word)) return value;
+    throw this.errorAt(strings.meshes.stl.word(word.slice(0, 40), strings.meshes.stl.number));
   }
 
   private expect(word: string): void {
-    const found = this.wanted(`'${word}'`);
-    if (found !== word) throw this.broken(strings.meshes.stl.word(found.slice(0, 40), `'${word}'`));
+    const found = this.nextRequired(`'${word}'`);
+    if (found !== word) throw this.errorAt(strings.meshes.stl.word(found.slice(0, 40), `'${word}'`));
   }
 
-  private wanted(what: string): string {
+  private nextRequired(what: string): string {
     const word = this.next();
     if (word !== null) return word;
     this.at = this.text.trimEnd().length;
-    throw this.broken(strings.meshes.stl.ends(what));
+    throw this.errorAt(strings.meshes.stl.ends(what));
   }
 
   private next(): string | null {
@@ -73,13 +73,13 @@ class AsciiStl {
     return match[0].toLowerCase();
   }
 
-  /** After `solid` stands a name, which may be anything. */
+  /** Skips the name after `solid`, which may be any text. */
   private skipLine(): void {
     const end = this.text.indexOf("\n", this.at);
     this.token.lastIndex = end < 0 ? this.text.length : end;
   }
 
-  private broken(what: string): MeshError {
+  private errorAt(what: string): MeshError {
     const line = this.text.slice(0, this.at).split("\n").length;
     return new MeshError(strings.meshes.stl.line(countText(line), what));
   }

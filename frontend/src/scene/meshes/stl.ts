@@ -1,40 +1,43 @@
 import { BufferAttribute, BufferGeometry } from "three";
 import { strings } from "../../strings";
 import { countText, MeshError } from "./mesh-error";
-import { collapseUnreal, unrealProblem } from "./mesh-numbers";
+import { collapseNonFinite, nonFiniteProblem } from "./non-finite";
 import type { MeshTemplate } from "./mesh-template";
 import { readAsciiStl } from "./stl-text";
 
 const HEADER_BYTES = 84;
 const COUNT_AT = 80;
 const TRIANGLE_BYTES = 50;
-/** A triangle begins with its normal, of three floats. */
+/** The size of the normal with which a triangle begins: three floats. */
 const NORMAL_BYTES = 12;
 /** A byte order mark and the like may precede the text. */
-const MOST_BEFORE_TEXT = 5;
+const MAX_PREFIX = 5;
 
 /**
- * STL, text or binary. RViz knows no colours in it: the link's material applies. Normals are computed, for exporters
- * leave them at zero.
+ * Reads STL, text or binary. As in RViz, it has no colours: the link's material applies. Normals are computed, because
+ * exporters often leave them at zero.
  *
- * @throws MeshError when it is none, or is broken or cut off.
+ * @throws MeshError if the file is not STL, or is damaged or truncated.
  */
 export function readStl(data: ArrayBuffer): MeshTemplate {
   const positions = isText(data) ? readAsciiStl(new TextDecoder().decode(data)) : readBinary(data);
   if (positions.length === 0) throw new MeshError(strings.meshes.stl.none);
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(positions, 3));
-  const problem = unrealProblem([collapseUnreal(geometry)]);
+  const problem = nonFiniteProblem([collapseNonFinite(geometry)]);
   geometry.computeVertexNormals();
   return { parts: [{ geometry, materials: [null] }], problem };
 }
 
-/** Binary files may begin with "solid", too: their length tells, and, when they were cut off, the zeros in them. */
+/**
+ * Whether a file is text. Binary files may begin with "solid", too, but have a matching length or, if truncated, zero
+ * bytes.
+ */
 function isText(data: ArrayBuffer): boolean {
   const bytes = new Uint8Array(data);
   const start = String.fromCharCode(...bytes.subarray(0, HEADER_BYTES));
   const at = start.toLowerCase().indexOf("solid");
-  const says = at >= 0 && (at <= MOST_BEFORE_TEXT || start.slice(0, at).trim() === "");
+  const says = at >= 0 && (at <= MAX_PREFIX || start.slice(0, at).trim() === "");
   if (!says) return false;
   const isWhole = bytes.length >= HEADER_BYTES && bytes.length === HEADER_BYTES + triangleCount(data) * TRIANGLE_BYTES;
   return !isWhole && !bytes.subarray(0, 4 * HEADER_BYTES).includes(0);
@@ -48,8 +51,8 @@ function readBinary(data: ArrayBuffer): Float32Array {
   const words = strings.meshes.stl;
   if (data.byteLength < HEADER_BYTES) throw new MeshError(words.short(countText(data.byteLength)));
   const count = triangleCount(data);
-  const held = Math.floor((data.byteLength - HEADER_BYTES) / TRIANGLE_BYTES);
-  if (held < count) throw new MeshError(words.fewer(countText(count), countText(held)));
+  const available = Math.floor((data.byteLength - HEADER_BYTES) / TRIANGLE_BYTES);
+  if (available < count) throw new MeshError(words.fewer(countText(count), countText(available)));
   const view = new DataView(data);
   const positions = new Float32Array(count * 9);
   for (let i = 0; i < count; i++) {

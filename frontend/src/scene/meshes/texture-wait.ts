@@ -3,10 +3,10 @@ import { strings } from "../../strings";
 import { quoted } from "./mesh-error";
 import type { MeshFiles } from "./mesh-files";
 
-/** A loading manager that knows when the textures a loader started have come, and which did not. */
+/** A loading manager that tracks the textures a loader requests, and which of them failed. */
 export class TextureWait {
   readonly manager: LoadingManager;
-  /** The names of files that did not come. */
+  /** The names of files that could not be loaded. */
   readonly missing: string[] = [];
   private pending = 0;
   private wake: (() => void) | null = null;
@@ -31,7 +31,7 @@ export class TextureWait {
     this.manager = manager;
   }
 
-  /** Waits for the textures started so far; a sentence about the missing ones, or null. */
+  /** Waits for the textures requested so far; returns a sentence about the missing ones, or null. */
   async settle(): Promise<string | null> {
     if (this.pending > 0) await new Promise<void>((resolve) => (this.wake = resolve));
     if (this.missing.length === 0) return null;

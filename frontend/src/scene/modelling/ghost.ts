@@ -1,10 +1,10 @@
 import { Mesh, MeshBasicMaterial, type BufferGeometry } from "three";
 import { isShape, type NewKind, type Placement } from "../../state/modelling/shapes";
 import { unitBox, unitCylinder, unitSphere } from "../objects/geometries";
-import { extrusion } from "../objects/world-geometries";
+import { extrudedPolygons } from "../objects/world-geometries";
 import { entityMatrix } from "./entity-pose";
 
-/** What has no shape of its own is shown as a disc on the ground, m. */
+/** The size of the disc on the ground for entities without a shape of their own, m. */
 const DISC = [0.2, 0.2, 0.01] as const;
 
 /** A translucent preview of the entity that is about to be added to the world. */
@@ -14,13 +14,13 @@ export class Ghost {
     new MeshBasicMaterial({ color: 0x58a6ff, transparent: true, opacity: 0.45, depthWrite: false }),
   );
 
-  private readonly wedge = extrusion([[-0.5, -0.5, 0.5, -0.5, 0.5, 0.5]], 1).translate(0, 0, -0.5).rotateX(Math.PI / 2);
+  private readonly wedge = extrudedPolygons([[-0.5, -0.5, 0.5, -0.5, 0.5, 0.5]], 1).translate(0, 0, -0.5).rotateX(Math.PI / 2);
 
   constructor() {
     this.root.visible = this.root.matrixAutoUpdate = false;
   }
 
-  /** Null for nothing. */
+  /** Shows the preview at a placement; null hides it. */
   show(kind: NewKind, placement: Placement | null): void {
     this.root.visible = placement !== null;
     if (!placement) return;

@@ -4,13 +4,13 @@ import type { GizmoMode } from "../../state/modelling/modelling";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
 
-/** Of the handles, for a mouse and for fingers. */
+/** The size of the handles, for a mouse and for fingers. */
 const [SIZE, LARGE] = [0.9, 1.3];
 
-/** How far handles reach on the canvas, as three.js has them. */
+/** The length of handles on the canvas, as three.js defines it. */
 const REACH = 0.19;
 
-/** Handles that move, turn and scale a frame; the stage's own events report the pointer to them. */
+/** Handles that move, rotate and scale a frame; they get pointer events from the stage. */
 export class Gizmo {
   private readonly frame = new Object3D();
   private readonly controls: TransformControls;
@@ -20,11 +20,11 @@ export class Gizmo {
     this.controls = new TransformControls(stage.viewport.camera);
     this.controls.size = matchMedia("(pointer: coarse)").matches ? LARGE : SIZE;
     this.helper = this.controls.getHelper();
-    stage.aids.add(this.frame, this.helper);
+    stage.overlays.add(this.frame, this.helper);
     this.controls.addEventListener("change", () => stage.loop.invalidate());
   }
 
-  get held(): boolean {
+  get isHeld(): boolean {
     return this.controls.dragging;
   }
 
@@ -37,7 +37,7 @@ export class Gizmo {
     return this.frame.scale.toArray();
   }
 
-  /** Puts the handles on a pose in the fixed frame, with its axes or those of the fixed frame; null takes them away. */
+  /** Shows the handles at a pose in the fixed frame, along its axes or those of the fixed frame; null hides them. */
   show(pose: Matrix4 | null, mode: GizmoMode, space: "world" | "local" = mode === "translate" ? "world" : "local"): void {
     if (pose === null) {
       this.controls.detach();
@@ -51,8 +51,8 @@ export class Gizmo {
     this.stage.loop.invalidate();
   }
 
-  /** The position of an axis's arrow or ring on the canvas, pixels; for tests. */
-  seenAt(axis: Vector3): { x: number; y: number } {
+  /** Returns the position of an axis's arrow or ring on the canvas, pixels; for tests. */
+  positionOf(axis: Vector3): { x: number; y: number } {
     const { camera, size } = this.stage.viewport;
     const angle = camera instanceof PerspectiveCamera ? (camera.fov * Math.PI) / 180 : 1;
     const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld);
@@ -68,15 +68,15 @@ export class Gizmo {
     return this.controls.axis !== null;
   }
 
-  /** Takes the handle under the pointer; false where there is none. */
+  /** Grabs the handle under the pointer; returns false if there is none. */
   grab(event: ToolEvent): boolean {
     if (!this.hover(event)) return false;
     this.helper.updateMatrixWorld(true); // the plane of this handle
     this.controls.pointerDown(this.pointer(event, 0));
-    return this.held;
+    return this.isHeld;
   }
 
-  /** Steps are in m and rad, 0 for none. */
+  /** Drags the handle; the steps are in m and rad, 0 for none. */
   drag(event: ToolEvent, steps: { length: number; angle: number }): void {
     this.controls.translationSnap = steps.length || null;
     this.controls.rotationSnap = steps.angle || null;
@@ -87,13 +87,13 @@ export class Gizmo {
     this.controls.pointerUp(this.pointer(event, 0));
   }
 
-  /** Lets go, with the frame where it was. */
+  /** Ends the drag and restores the frame. */
   cancel(): void {
     this.controls.reset();
     this.controls.pointerUp(null);
   }
 
-  /** The event for three.js's controls: the place from -1 to 1, and a button as browsers number them. */
+  /** Returns the event for three.js's controls: the position from -1 to 1, and a button as browsers number them. */
   private pointer({ x, y }: ToolEvent, button: number): PointerEvent {
     const { width, height } = this.stage.viewport.size;
     return { x: (x / width) * 2 - 1, y: 1 - (y / height) * 2, button } as PointerEvent;

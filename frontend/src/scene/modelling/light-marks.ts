@@ -2,13 +2,13 @@ import { Group, Matrix4, Mesh, MeshBasicMaterial, OctahedronGeometry, type Rayca
 import type { Modelling } from "../../state/modelling/modelling";
 import { entityMatrix } from "./entity-pose";
 
-/** m. */
+/** The radius of a mark, m. */
 const RADIUS = 0.12;
 const [COLOR, SELECTED] = [0xffd54a, 0x5db0ff];
 
-/** Marks at the lights of the world, which could not be seen or clicked otherwise. */
+/** Marks at the lights of the world, which would otherwise be invisible and could not be clicked. */
 export class LightMarks {
-  /** In the world's frame. */
+  /** The group of the marks, in the world's frame. */
   readonly root = new Group();
   private readonly shape = new OctahedronGeometry(RADIUS);
   private readonly marks = new Map<string, Mesh<OctahedronGeometry, MeshBasicMaterial>>();
@@ -17,7 +17,7 @@ export class LightMarks {
     this.root.matrixAutoUpdate = false;
   }
 
-  /** Matches the lights there are; `moved` are those shown elsewhere. */
+  /** Updates the marks of all lights; `moved` has the displacements of lights being dragged. */
   update(world: Matrix4, moved: ReadonlyMap<string, Matrix4>): void {
     const { active, entities, selected } = this.modelling;
     const lights = active ? entities.filter(({ kind }) => kind === "light") : [];
@@ -37,7 +37,7 @@ export class LightMarks {
     this.root.updateMatrixWorld(true);
   }
 
-  /** The light that a ray meets, and how far away, m. */
+  /** Returns the light that a ray hits, and its distance, m. */
   pick(ray: Raycaster): { name: string; distance: number } | null {
     const [hit] = ray.intersectObjects([...this.marks.values()], false);
     return hit ? { name: hit.object.name, distance: hit.distance } : null;

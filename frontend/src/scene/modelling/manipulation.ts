@@ -1,20 +1,20 @@
 import { Matrix4, Vector3 } from "three";
 import type { WorldEntity } from "../../protocol";
 import type { Modelling } from "../../state/modelling/modelling";
-import { resized, scaledSize, stretch, type Change } from "../../state/modelling/shapes";
+import { resizeChange, scaledSize, stretchFactors, type Change } from "../../state/modelling/shapes";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
 import { Gizmo } from "./gizmo";
 import { entityMatrix, entityPose } from "./entity-pose";
 import { worldFrame } from "./world-frame";
 
-/** m or rad: a smaller difference is not a change. */
-const NOTHING = 1e-8;
+/** m or rad; a smaller difference does not count as a change. */
+const MIN_CHANGE = 1e-8;
 
-/** Shows entities moved in the world, by the matrices that premultiply their poses. */
+/** Shows entities displaced in the world, by the matrices that premultiply their poses. */
 export type Displace = (moved: ReadonlyMap<string, Matrix4>) => void;
 
-/** The gizmo on what is selected: moved here at once, in the world when it is let go. */
+/** The gizmo on the selection: dragging shows the change immediately, and releasing applies it to the world. */
 export class Manipulation {
   private readonly gizmo: Gizmo;
   private changes: readonly Change[] = [];
@@ -27,21 +27,21 @@ export class Manipulation {
     this.gizmo = new Gizmo(stage);
   }
 
-  /** Puts the gizmo where it belongs. */
+  /** Moves the gizmo to the selection. */
   update(): void {
     const { modelling } = this;
-    if (this.gizmo.held) return;
+    if (this.gizmo.isHeld) return;
     const entity = modelling.active && modelling.placing === null ? modelling.selectedEntities.at(-1) : undefined;
     const shown = entity && (modelling.gizmo !== "scale" || modelling.canScale);
     this.gizmo.show(shown ? worldFrame(this.stage).multiply(entityMatrix(entity.pose)) : null, modelling.gizmo);
   }
 
-  /** False for an event that others should have. */
+  /** Handles an event; returns false if it is left to others. */
   pointer(event: ToolEvent): boolean {
     const { gizmo } = this;
-    if (gizmo.held) {
+    if (gizmo.isHeld) {
       if (event.type === "move") this.move(event);
-      else if (event.type === "up" && event.button === "left") return this.letGo(event);
+      else if (event.type === "up" && event.button === "left") return this.release(event);
       return true;
     }
     if (event.type === "down" && event.button === "left") return gizmo.grab(event);
@@ -50,9 +50,9 @@ export class Manipulation {
     return true;
   }
 
-  /** Lets go without a change; false when nothing is held. */
+  /** Cancels the drag; returns false if none is in progress. */
   cancel(): boolean {
-    if (!this.gizmo.held) return false;
+    if (!this.gizmo.isHeld) return false;
     this.gizmo.cancel();
     this.changes = [];
     this.displace(new Map());
@@ -68,11 +68,11 @@ export class Manipulation {
     const main = entities.at(-1);
     if (!main) return;
     if (modelling.gizmo === "scale") this.scale(main, steps.length);
-    else this.carry(entities, main);
+    else this.moveAll(entities, main);
   }
 
-  /** False for a mere click, which is for what is behind the handle. */
-  private letGo(event: ToolEvent): boolean {
+  /** Ends the drag; returns false for a mere click, which is meant for what is behind the handle. */
+  private release(event: ToolEvent): boolean {
     const { changes } = this;
     this.gizmo.release(event);
     this.changes = [];
@@ -81,8 +81,8 @@ export class Manipulation {
     return changes.length > 0;
   }
 
-  /** All go with the entity that the gizmo is on. */
-  private carry(entities: readonly WorldEntity[], main: WorldEntity): void {
+  /** Moves all selected entities together with the one that has the gizmo. */
+  private moveAll(entities: readonly WorldEntity[], main: WorldEntity): void {
     const to = worldFrame(this.stage).invert().multiply(this.gizmo.pose);
     const by = to.multiply(entityMatrix(main.pose).invert());
     const moved = entities.map(({ name, pose }) => ({ name, pose: entityPose(by.clone().multiply(entityMatrix(pose))) }));
@@ -94,13 +94,13 @@ export class Manipulation {
     const { name, shape, size, pose } = entity;
     if (shape === null) return;
     const next = scaledSize(shape, size, this.gizmo.scale, step);
-    const change = resized(entity, next);
-    const stretched = new Matrix4().scale(new Vector3(...stretch(shape, size, next)));
+    const change = resizeChange(entity, next);
+    const stretched = new Matrix4().scale(new Vector3(...stretchFactors(shape, size, next)));
     this.changes = same(size, next) ? [] : [change];
     this.displace(new Map([[name, entityMatrix(change.pose ?? pose).multiply(stretched).multiply(entityMatrix(pose).invert())]]));
   }
 }
 
 function same(some: readonly number[], others: readonly number[]): boolean {
-  return some.every((value, i) => Math.abs(value - (others[i] ?? NaN)) < NOTHING);
+  return some.every((value, i) => Math.abs(value - (others[i] ?? NaN)) < MIN_CHANGE);
 }

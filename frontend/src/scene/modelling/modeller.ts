@@ -11,7 +11,7 @@ import { Manipulation } from "./manipulation";
 import { Placer } from "./placer";
 import { worldFrame } from "./world-frame";
 
-/** Handles the mouse while the world is edited: selects, moves and adds models and lights. */
+/** Handles the mouse while the world is modelled: selects, moves and adds models and lights. */
 export class Modeller {
   private readonly manipulation: Manipulation;
   private readonly placer: Placer;
@@ -25,7 +25,7 @@ export class Modeller {
   ) {
     const { modelling, simulation, frames, data } = session;
     this.lights = new LightMarks(modelling);
-    stage.aids.add(this.lights.root);
+    stage.overlays.add(this.lights.root);
     this.manipulation = new Manipulation(stage, modelling, (moved) => this.displace(moved));
     this.placer = new Placer(stage, modelling);
     modelling.changed.on(() => this.follow());
@@ -41,7 +41,7 @@ export class Modeller {
         if (modelling.active) this.update();
       });
     }
-    // A model that has just been added is drawn later than it is announced.
+    // A new model is drawn later than it is announced.
     data.received.on(({ content }) => {
       if (modelling.active && content.kind === "world_scene") this.select();
     });
@@ -49,7 +49,7 @@ export class Modeller {
     this.drop();
   }
 
-  /** Handles an event and returns it for the tool in hand; null where that is to have none. */
+  /** Handles an event and returns the event for the active tool; null if the tool is to get none. */
   pointer(event: ToolEvent): ToolEvent | null {
     const { modelling, tools } = this.session;
     if (!modelling.active || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return event;
@@ -62,7 +62,7 @@ export class Modeller {
     return { ...event, click: false };
   }
 
-  /** Esc: releases the entity that is held or in hand, else clears the selection. */
+  /** Handles Esc: cancels the drag or the placing in progress, or else clears the selection. */
   escape(): void {
     const { modelling } = this.session;
     if (this.manipulation.cancel()) return;
@@ -77,12 +77,12 @@ export class Modeller {
     else if (!shift && !ctrl) modelling.select([]);
   }
 
-  /** The entity of the world's file that is seen at a place; the ground does not block any entity. */
+  /** Returns the entity of the world's file under the pointer; the ground does not hide entities. */
   private entityAt(x: number, y: number): string | null {
     const { picker } = this.stage;
     const ray = picker.rayAt(x, y);
     const light = this.lights.pick(ray);
-    const found = picker.along(ray);
+    const found = picker.alongRay(ray);
     if (light && (!found || light.distance < found.hit.distance)) return light.name;
     if (!(found?.drawing instanceof WorldDrawing)) return null;
     const name = modelOf(found.hit.key);

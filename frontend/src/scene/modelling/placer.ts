@@ -1,20 +1,20 @@
 import { Group } from "three";
 import type { Modelling, Placing } from "../../state/modelling/modelling";
 import { placementAt, wallBetween, type Place, type Placement } from "../../state/modelling/shapes";
-import { snapped } from "../../state/modelling/snapping";
+import { snap } from "../../state/modelling/snapping";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
 import { Ghost } from "./ghost";
 import { groundAt, worldFrame } from "./world-frame";
 
-/** Puts what is in hand onto the ground: by a click, a wall by dragging or by two clicks. */
+/** Places the chosen entity on the ground: with a click, or a wall by dragging or with two clicks. */
 export class Placer {
   private readonly ghost = new Ghost();
-  /** The world's frame. */
+  /** A group in the world's frame. */
   private readonly world = new Group();
   private start: Place | null = null;
-  /** The wall's first end was clicked; the second will be. */
-  private clicked = false;
+  /** Whether the first end of a wall was clicked, so that the next click is its second end. */
+  private hasFirstEnd = false;
 
   constructor(
     private readonly stage: Stage,
@@ -22,49 +22,49 @@ export class Placer {
   ) {
     this.world.matrixAutoUpdate = false;
     this.world.add(this.ghost.root);
-    stage.aids.add(this.world);
+    stage.overlays.add(this.world);
     modelling.toolChanged.on(() => this.reset());
   }
 
-  /** False for an event that others should have. */
+  /** Handles an event; returns false if it is left to others. */
   pointer(event: ToolEvent): boolean {
     const { placing } = this.modelling;
     if (!placing || event.type === "wheel") return false;
     if (event.type === "leave") this.show(placing, null);
-    if (placing.kind === "wall") return this.wall(placing, event);
+    if (placing.kind === "wall") return this.handleWall(placing, event);
     const placement = this.placementAt(placing, event);
     if (event.type === "move" && !event.left) this.show(placing, placement);
-    if (event.type !== "up" || !event.click || event.button !== "left") return event.type === "move" && !pressed(event);
-    if (placement) this.put(placing, placement, event.shift);
+    if (event.type !== "up" || !event.click || event.button !== "left") return event.type === "move" && !isPressed(event);
+    if (placement) this.add(placing, placement, event.shift);
     return false;
   }
 
-  /** Puts something where the pointer is. */
+  /** Places an entity at the pointer. */
   drop(placing: Placing, x: number, y: number): void {
     const at = this.ground(x, y, false);
-    if (at && placing.kind !== "wall") this.put(placing, placementAt(placing.kind, at), false);
-    else if (at) this.put(placing, wallBetween([at[0] - 0.5, at[1]], [at[0] + 0.5, at[1]]), false);
+    if (at && placing.kind !== "wall") this.add(placing, placementAt(placing.kind, at), false);
+    else if (at) this.add(placing, wallBetween([at[0] - 0.5, at[1]], [at[0] + 0.5, at[1]]), false);
   }
 
-  private wall(placing: Placing, event: ToolEvent): boolean {
+  private handleWall(placing: Placing, event: ToolEvent): boolean {
     const at = this.ground(event.x, event.y, event.ctrl);
-    if (event.type === "down" && event.button === "left" && !this.clicked) this.start = at;
+    if (event.type === "down" && event.button === "left" && !this.hasFirstEnd) this.start = at;
     const placement = this.start && at && wallBetween(this.start, at);
     if (event.type === "move" && !event.middle && !event.right) {
       this.show(placing, placement ?? (at && { pose: [...at, 0, 0, 0, 0], size: [0.1, 0.1, 1] }));
       return true;
     }
     if (event.type !== "up" || event.button !== "left") return event.left;
-    if (event.click && !this.clicked) this.clicked = this.start !== null;
+    if (event.click && !this.hasFirstEnd) this.hasFirstEnd = this.start !== null;
     else {
-      if (placement) this.put(placing, placement, true);
+      if (placement) this.add(placing, placement, true);
       this.start = null;
-      this.clicked = false;
+      this.hasFirstEnd = false;
     }
     return true;
   }
 
-  private put(placing: Placing, placement: Placement | null, stays: boolean): void {
+  private add(placing: Placing, placement: Placement | null, stays: boolean): void {
     if (!placement) return;
     this.modelling.add(placing, placement);
     if (!stays) this.modelling.place(null);
@@ -78,7 +78,7 @@ export class Placer {
   private ground(x: number, y: number, inverted: boolean): Place | null {
     const at = groundAt(this.stage, x, y);
     const step = this.modelling.snapping.steps(inverted).length;
-    return at && [snapped(at[0], step), snapped(at[1], step)];
+    return at && [snap(at[0], step), snap(at[1], step)];
   }
 
   private show({ kind }: Placing, placement: Placement | null): void {
@@ -89,12 +89,12 @@ export class Placer {
 
   private reset(): void {
     this.start = null;
-    this.clicked = false;
+    this.hasFirstEnd = false;
     this.ghost.hide();
     this.stage.loop.invalidate();
   }
 }
 
-function pressed({ left, middle, right }: ToolEvent): boolean {
+function isPressed({ left, middle, right }: ToolEvent): boolean {
   return left || middle || right;
 }

@@ -4,12 +4,12 @@ import type { Stage } from "../stage";
 
 const GROUND = new Plane(new Vector3(0, 0, 1), 0);
 
-/** The pose of the world in the fixed frame. */
+/** Returns the pose of the world in the fixed frame. */
 export function worldFrame(stage: Stage): Matrix4 {
   return stage.world?.drawing.world() ?? new Matrix4();
 }
 
-/** The point of the world's ground, z = 0, at a place of the canvas, pixels. */
+/** Returns the point of the world's ground, z = 0, at a position on the canvas, pixels. */
 export function groundAt(stage: Stage, x: number, y: number): Place | null {
   const ray = stage.picker.rayAt(x, y).ray.clone().applyMatrix4(worldFrame(stage).invert());
   const at = ray.intersectPlane(GROUND, new Vector3());

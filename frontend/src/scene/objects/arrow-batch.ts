@@ -2,7 +2,7 @@ import { Matrix4, Quaternion, Vector3, type Box3, type Object3D, type Raycaster 
 import { CopyBatch, type CopyHit } from "./copy-batch";
 import { coneGeometry, rodGeometry } from "./geometries";
 
-/** RViz's arrow: a shaft and behind it a head, metres. */
+/** RViz's arrow: a shaft followed by a head; lengths in m. */
 export interface ArrowShape {
   shaftLength: number;
   shaftDiameter: number;
@@ -10,24 +10,24 @@ export interface ArrowShape {
   headDiameter: number;
 }
 
-/** Colours as 0xrrggbb; the head has the shaft's unless it is given its own. */
+/** Colours as 0xrrggbb; the head has the shaft's colour unless `headColor` is given. */
 export interface ArrowLook {
   color: number;
   headColor?: number;
   alpha?: number;
-  /** 1 is all grey. */
+  /** 0: its own colour, 1: grey. */
   grey?: number;
 }
 
 const ALONG_X = new Vector3(1, 0, 0);
 const ONE = new Vector3(1, 1, 1);
 
-/** Any number of arrows in two draw calls. They point along x, as the poses that RViz draws as arrows. */
+/** Any number of arrows in two draw calls, along the x axis of their poses, as in RViz. */
 export class ArrowBatch {
   private readonly shafts: CopyBatch;
   private readonly heads: CopyBatch;
-  /** The numbers of the arrows that have a shaft. */
-  private shafted: number[] = [];
+  /** The indices of the arrows that have a shaft. */
+  private withShaft: number[] = [];
   private readonly matrix = new Matrix4();
   private readonly step = new Matrix4();
 
@@ -36,24 +36,24 @@ export class ArrowBatch {
     this.heads = new CopyBatch(parent, coneGeometry(segments));
   }
 
-  /** Arrows drawn now. */
+  /** The number of arrows drawn now. */
   get size(): number {
     return this.heads.size;
   }
 
-  /** Starts over; at most `expected` arrows will follow. */
+  /** Removes all arrows; at most `expected` will be added. */
   begin(expected: number): void {
-    this.shafted = [];
+    this.withShaft = [];
     this.shafts.begin(expected);
     this.heads.begin(expected);
   }
 
-  /** An arrow from the origin of `pose` along its x. */
+  /** Adds an arrow from the origin of `pose` along its x axis. */
   add(pose: Matrix4, shape: ArrowShape, look: ArrowLook): void {
     const { shaftLength, shaftDiameter, headLength, headDiameter } = shape;
     const { color, headColor = color, alpha = 1, grey = 0 } = look;
     if (shaftLength > 0) {
-      this.shafted.push(this.size);
+      this.withShaft.push(this.size);
       this.step.makeScale(shaftLength, shaftDiameter, shaftDiameter);
       this.shafts.add(this.matrix.multiplyMatrices(pose, this.step), grey, alpha, color);
     }
@@ -71,11 +71,11 @@ export class ArrowBatch {
     this.heads.expandBox(box);
   }
 
-  /** The number of the nearest arrow under a ray. */
+  /** Returns the nearest arrow that a ray hits. */
   pick(ray: Raycaster): CopyHit | null {
     const [shaft, head] = [this.shafts.pick(ray), this.heads.pick(ray)];
     if (!shaft || (head && head.distance <= shaft.distance)) return head;
-    return { ...shaft, copy: this.shafted[shaft.copy] ?? 0 };
+    return { ...shaft, copy: this.withShaft[shaft.copy] ?? 0 };
   }
 
   dispose(): void {
@@ -87,7 +87,7 @@ export class ArrowBatch {
 const turn = new Quaternion();
 const unit = new Vector3();
 
-/** Writes into `pose` a pose at `origin` whose x points along `direction`; it does so for a direction of any length. */
+/** Computes a pose at `origin` whose x axis points along `direction`, which may have any length. */
 export function alongX(origin: Vector3, direction: Vector3, pose: Matrix4): Matrix4 {
   turn.setFromUnitVectors(ALONG_X, unit.copy(direction).normalize());
   return pose.compose(origin, turn, ONE);

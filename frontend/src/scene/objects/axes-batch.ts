@@ -5,7 +5,7 @@ import { axesGeometry } from "./geometries";
 /** Any number of axes of one size in one draw call: x red, y green, z blue. */
 export class AxesBatch {
   private copies: CopyBatch;
-  private made = "";
+  private shapeKey = "";
 
   constructor(
     private readonly parent: Object3D,
@@ -16,19 +16,19 @@ export class AxesBatch {
     this.copies = this.make(length, radius, segments);
   }
 
-  /** Axes drawn now. */
+  /** The number of axes drawn now. */
   get size(): number {
     return this.copies.size;
   }
 
-  /** Changes the size, metres; radius as RViz means it, see `axesGeometry`. Before `begin`. */
+  /** Changes the size, m; for the radius see `axesGeometry`. Must be called before `begin`. */
   setShape(length: number, radius: number, segments = 12): void {
-    if (this.made === [length, radius, segments].join()) return;
+    if (this.shapeKey === [length, radius, segments].join()) return;
     this.copies.dispose();
     this.copies = this.make(length, radius, segments);
   }
 
-  /** Starts over; at most `expected` axes will follow. */
+  /** Removes all axes; at most `expected` will be added. */
   begin(expected: number): void {
     this.copies.begin(expected);
   }
@@ -45,7 +45,7 @@ export class AxesBatch {
     this.copies.expandBox(box);
   }
 
-  /** The number of the nearest axes under a ray. */
+  /** Returns the nearest axes that a ray hits. */
   pick(ray: Raycaster): CopyHit | null {
     return this.copies.pick(ray);
   }
@@ -55,7 +55,7 @@ export class AxesBatch {
   }
 
   private make(length: number, radius: number, segments: number): CopyBatch {
-    this.made = [length, radius, segments].join();
+    this.shapeKey = [length, radius, segments].join();
     return new CopyBatch(this.parent, axesGeometry(length, radius, segments));
   }
 }

@@ -13,8 +13,8 @@ import {
 } from "three";
 import { OPAQUE_FROM } from "../materials";
 
-/** Cells along a side of a part; every graphics library takes textures of that size. */
-const PART = 4096;
+/** Cells along each side of a part; every graphics library supports textures of this size. */
+const PART_CELLS = 4096;
 
 const VERTEX = /* glsl */ `
   varying vec2 vUv;
@@ -36,20 +36,20 @@ const FRAGMENT = /* glsl */ `
   }
 `;
 
-/** The look of cells. */
+/** How cells are drawn. */
 export interface CellLook {
-  /** 256 times red, green, blue and alpha: the colours of the bytes. */
+  /** The colours of the byte values: 256 times red, green, blue and alpha. */
   palette: Uint8Array;
   alpha: number;
-  /** Some colours of the palette let something through. */
+  /** Whether some colours of the palette are transparent. */
   seeThrough: boolean;
-  /** Before everything else, which is then drawn over it wherever it is. */
+  /** Whether the plane is drawn before everything else, which then covers it regardless of depth. */
   behind: boolean;
-  /** Among planes at one place, the higher one covers. */
+  /** The render order: among coplanar planes, the one with the higher order covers the others. */
   order: number;
 }
 
-/** A plane of square cells along x and y, from the origin on, each a byte that a palette colours. */
+/** A plane of square cells along x and y from the origin; a palette maps the byte of each cell to a colour. */
 export class CellPlane {
   readonly root = new Group();
   private parts: Mesh<PlaneGeometry, ShaderMaterial>[] = [];
@@ -57,15 +57,15 @@ export class CellPlane {
   private look: CellLook | null = null;
   private size = "";
 
-  /** Takes cells row by row; `resolution` is the side of a cell, m. */
+  /** Sets the cells, row by row; `resolution` is the side of a cell, m. */
   setCells(cells: Uint8Array, width: number, height: number, resolution: number): void {
     const size = [width, height, resolution].join();
     if (size !== this.size) {
       this.clear();
       this.size = size;
-      for (let y = 0; y < height; y += PART) {
-        for (let x = 0; x < width; x += PART) {
-          this.add(x, y, Math.min(PART, width - x), Math.min(PART, height - y), resolution);
+      for (let y = 0; y < height; y += PART_CELLS) {
+        for (let x = 0; x < width; x += PART_CELLS) {
+          this.add(x, y, Math.min(PART_CELLS, width - x), Math.min(PART_CELLS, height - y), resolution);
         }
       }
       if (this.look) this.setLook(this.look);
@@ -84,7 +84,7 @@ export class CellPlane {
     this.palette.value.needsUpdate = true;
     const seeThrough = look.alpha < OPAQUE_FROM || look.seeThrough;
     for (const { material } of this.parts) {
-      // What is drawn behind must come before all that hides nothing, too: it is blended, but no see-through material.
+      // A plane drawn behind must precede transparent objects, too: it is blended, but does not count as transparent.
       material.transparent = seeThrough && !look.behind;
       material.blending = CustomBlending;
       material.depthWrite = !seeThrough && !look.behind;
@@ -136,15 +136,15 @@ export class CellPlane {
 }
 
 function texture(data: Uint8Array, width: number, height: number): DataTexture {
-  const made = new DataTexture(data, width, height);
-  if (data.length === width * height) made.format = RedFormat;
-  made.magFilter = made.minFilter = NearestFilter;
-  made.wrapS = made.wrapT = ClampToEdgeWrapping;
-  made.unpackAlignment = 1;
-  return made;
+  const texture = new DataTexture(data, width, height);
+  if (data.length === width * height) texture.format = RedFormat;
+  texture.magFilter = texture.minFilter = NearestFilter;
+  texture.wrapS = texture.wrapT = ClampToEdgeWrapping;
+  texture.unpackAlignment = 1;
+  return texture;
 }
 
-/** The cells of a part, from the row-by-row cells of the whole. */
+/** Copies the cells of a part from the row-by-row cells of the whole. */
 function copy(cells: Uint8Array, width: number, left: number, bottom: number, map: DataTexture): void {
   const { data, width: columns, height: rows } = map.image;
   const target = data as Uint8Array;

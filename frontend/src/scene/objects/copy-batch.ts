@@ -13,23 +13,23 @@ import {
   type Raycaster,
   type ShaderMaterial,
 } from "three";
-import { behind } from "../materials";
+import { offsetBehind } from "../materials";
 import { slotMaterial, slotTexture, TEXELS_PER_SLOT, writeSlot } from "./slot-material";
 
 const FLOATS_PER_SLOT = TEXELS_PER_SLOT * 4;
 const WHITE = 0xffffff;
-/** More copies than these are all drawn, in the order in which they were added. */
-const MOST_ARRANGED = 1000;
-/** After everything but labels. */
+/** Batches with more copies are drawn completely, in the order in which the copies were added. */
+const MAX_SORTED = 1000;
+/** Overlays are drawn after everything but labels. */
 const OVERLAY_ORDER = 5;
 
-/** The drawing order of copies: over everything, or behind. */
-export interface CopyPlace {
-  /** Over everything; for shapes that do not hide parts of themselves. */
+/** How copies are drawn relative to other objects. */
+export interface CopyOptions {
+  /** Whether the copies cover everything; for shapes that do not hide parts of themselves. */
   readonly isOverlay?: boolean;
-  /** Lines and marks in the same plane are seen on them. */
+  /** Whether lines and marks in the same plane remain visible. */
   readonly isBehind?: boolean;
-  /** Whether they are lit softly, and not as RViz does; it may change. */
+  /** Whether the copies have the soft light instead of RViz's; the value may change. */
   readonly isSoft?: { value: boolean };
 }
 
@@ -43,12 +43,12 @@ export interface CopyHit {
 /**
  * Many copies of one shape in one draw call, each with its own matrix, colour, grey and alpha.
  *
- * Use: `begin(most)`, then `add` for each copy, then `end`; this removes the earlier copies. The shape must have an index,
- * normals and colours (`paint` of geometries.ts), which each copy's colour is multiplied with.
+ * Call `begin(most)`, then `add` for each copy, then `end`; this replaces the earlier copies. The shape must have an
+ * index, normals and colours (`paint` of geometries.ts), which are multiplied by each copy's colour.
  *
- * The copies' vertices are in one buffer and each finds its matrix in a texture. GPU instancing would be shorter, but
- * software renderers take some 50 microseconds for every instance: 500 frames would draw at 6 frames a second. For them, too,
- * copies that a camera does not see are left out: their vertices cost as much as others'.
+ * The vertices of all copies are in one buffer, and each finds its matrix in a texture. GPU instancing would be
+ * simpler, but software renderers take some 50 microseconds for each instance: 500 frames would be drawn at 6 frames a
+ * second. Copies outside the view are omitted for the same reason: their vertices cost as much as visible ones.
  */
 export class CopyBatch {
   private readonly mesh: CopyMesh;
@@ -57,56 +57,59 @@ export class CopyBatch {
   private capacity = 0;
   private count = 0;
   private seeThrough = false;
-  /** What the slots of all copies hold. */
-  private all = new Float32Array(0);
-  /** Which copies are in the slots; null for all, in their order. */
-  private arranged: readonly number[] | null = null;
+  /** The contents of the slots of all copies. */
+  private allSlots = new Float32Array(0);
+  /** The copies in the slots; null for all in their order. */
+  private inSlots: readonly number[] | null = null;
   private isUploaded = false;
 
   constructor(
     parent: Object3D,
     private readonly shape: BufferGeometry,
-    private readonly place: CopyPlace = {},
+    private readonly options: CopyOptions = {},
   ) {
     this.slots = { value: slotTexture(0) };
-    this.mesh = new CopyMesh(new BufferGeometry(), slotMaterial(this.slots, place.isSoft), (box) => this.expandBox(box));
-    Object.assign(this.mesh.material, behind(place.isBehind === true));
-    if (place.isOverlay) {
+    this.mesh = new CopyMesh(new BufferGeometry(), slotMaterial(this.slots, options.isSoft), (box) => this.expandBox(box));
+    Object.assign(this.mesh.material, offsetBehind(options.isBehind === true));
+    if (options.isOverlay) {
       this.mesh.material.depthTest = this.mesh.material.depthWrite = false;
       this.mesh.material.transparent = true; // opaque things are drawn before, whatever their order
       this.mesh.renderOrder = OVERLAY_ORDER;
     }
     this.mesh.visible = false;
     this.mesh.onBeforeRender = (_renderer, _scene, camera) => this.arrange(camera);
-    // The copies are all over the place: a bounding sphere of them costs more than drawing them.
+    // The copies may be anywhere: computing their bounding sphere costs more than drawing them.
     this.mesh.frustumCulled = false;
     this.mesh.matrixAutoUpdate = false;
     this.probe = new Mesh(shape);
     parent.add(this.mesh);
   }
 
-  /** Copies drawn now. */
+  /** The number of copies drawn now. */
   get size(): number {
     return this.count;
   }
 
-  /** Starts over; at most `expected` copies will follow. */
+  /** Removes all copies; at most `expected` will be added. */
   begin(expected: number): void {
     this.count = 0;
     this.seeThrough = false;
-    this.arranged = null;
+    this.inSlots = null;
     if (expected <= this.capacity) return;
     this.capacity = Math.ceil(expected * 1.25);
     this.mesh.geometry.dispose();
     this.mesh.geometry = copies(this.shape, this.capacity);
     this.slots.value.dispose();
     this.slots.value = slotTexture(this.capacity);
-    this.all = new Float32Array(this.texels.length);
+    this.allSlots = new Float32Array(this.texels.length);
   }
 
-  /** `matrix` in the parent's frame; `grey` 1 is all grey; `color` is 0xrrggbb. */
+  /**
+   * Adds a copy. `matrix` is in the parent's frame; `grey` is 0 for the copy's own colour, 1 for grey; `color` is
+   * 0xrrggbb.
+   */
   add(matrix: Matrix4, grey = 0, alpha = 1, color = WHITE): void {
-    writeSlot(this.all, this.count, matrix, color, grey, alpha);
+    writeSlot(this.allSlots, this.count, matrix, color, grey, alpha);
     this.seeThrough ||= alpha < 1;
     this.count += 1;
   }
@@ -117,13 +120,13 @@ export class CopyBatch {
     this.mesh.boundingBox = null;
     geometry.setDrawRange(0, this.count * (this.shape.index?.count ?? 0));
     this.isUploaded = false;
-    if (this.place.isOverlay || material.transparent === this.seeThrough) return;
+    if (this.options.isOverlay || material.transparent === this.seeThrough) return;
     material.transparent = this.seeThrough;
     material.depthWrite = !this.seeThrough;
     material.needsUpdate = true;
   }
 
-  /** Makes `box` hold all copies, in the parent's frame. */
+  /** Expands `box` by all copies, in the parent's frame. */
   expandBox(box: Box3): void {
     if (!this.shape.boundingBox) this.shape.computeBoundingBox();
     const shape = this.shape.boundingBox ?? new Box3();
@@ -131,7 +134,7 @@ export class CopyBatch {
     for (let copy = 0; copy < this.count; copy++) box.union(shape.clone().applyMatrix4(this.matrixOf(copy, matrix)));
   }
 
-  /** The number of the nearest copy under a ray. */
+  /** Returns the nearest copy that a ray hits. */
   pick(ray: Raycaster): CopyHit | null {
     let best: CopyHit | null = null;
     const { matrixWorld } = this.mesh;
@@ -153,25 +156,25 @@ export class CopyBatch {
     this.shape.dispose();
   }
 
-  /** Puts into the slots what a camera sees; what can be seen through from the farthest to the nearest. */
+  /** Fills the slots with the copies in view; transparent ones are sorted from the farthest to the nearest. */
   private arrange(camera: Camera): void {
-    const wanted = this.count > MOST_ARRANGED ? null : this.seen(camera);
-    if (this.isUploaded && areSame(wanted, this.arranged)) return;
-    const { texels, all } = this;
-    if (wanted === null) texels.set(all.subarray(0, this.count * FLOATS_PER_SLOT));
+    const wanted = this.count > MAX_SORTED ? null : this.visibleCopies(camera);
+    if (this.isUploaded && areSame(wanted, this.inSlots)) return;
+    const { texels, allSlots } = this;
+    if (wanted === null) texels.set(allSlots.subarray(0, this.count * FLOATS_PER_SLOT));
     else {
       wanted.forEach((copy, slot) => {
-        texels.set(all.subarray(copy * FLOATS_PER_SLOT, (copy + 1) * FLOATS_PER_SLOT), slot * FLOATS_PER_SLOT);
+        texels.set(allSlots.subarray(copy * FLOATS_PER_SLOT, (copy + 1) * FLOATS_PER_SLOT), slot * FLOATS_PER_SLOT);
       });
     }
     this.mesh.geometry.setDrawRange(0, (wanted?.length ?? this.count) * (this.shape.index?.count ?? 0));
     this.slots.value.needsUpdate = true;
-    this.arranged = wanted;
+    this.inSlots = wanted;
     this.isUploaded = true;
   }
 
-  /** The copies that a camera sees, in the order in which they are drawn. */
-  private seen(camera: Camera): number[] {
+  /** Returns the copies in a camera's view, in drawing order. */
+  private visibleCopies(camera: Camera): number[] {
     if (!this.shape.boundingSphere) this.shape.computeBoundingSphere();
     const whole = this.shape.boundingSphere ?? new Sphere();
     const view = new Matrix4().multiplyMatrices(camera.matrixWorldInverse, this.mesh.matrixWorld);
@@ -182,7 +185,7 @@ export class CopyBatch {
       sphere.copy(whole).applyMatrix4(this.matrixOf(copy, matrix).premultiply(view));
       if (frustum.intersectsSphere(sphere)) found.push({ copy, height: sphere.center.z });
     }
-    if (this.seeThrough && !this.place.isOverlay) found.sort((a, b) => a.height - b.height);
+    if (this.seeThrough && !this.options.isOverlay) found.sort((a, b) => a.height - b.height);
     return found.map(({ copy }) => copy);
   }
 
@@ -191,9 +194,9 @@ export class CopyBatch {
   }
 
   private matrixOf(copy: number, matrix: Matrix4): Matrix4 {
-    const { all } = this;
+    const { allSlots } = this;
     const at = copy * FLOATS_PER_SLOT;
-    const row = (i: number): [number, number, number, number] => [all[i] ?? 0, all[i + 1] ?? 0, all[i + 2] ?? 0, all[i + 3] ?? 0];
+    const row = (i: number): [number, number, number, number] => [allSlots[i] ?? 0, allSlots[i + 1] ?? 0, allSlots[i + 2] ?? 0, allSlots[i + 3] ?? 0];
     return matrix.set(...row(at), ...row(at + 4), ...row(at + 8), 0, 0, 0, 1);
   }
 }
@@ -221,7 +224,7 @@ class CopyMesh extends Mesh<BufferGeometry, ShaderMaterial> {
   }
 }
 
-/** The shape `count` times over; each vertex knows the number of its copy. */
+/** Repeats the shape `count` times; each vertex has the index of its copy. */
 function copies(shape: BufferGeometry, count: number): BufferGeometry {
   const result = new BufferGeometry();
   const vertices = shape.getAttribute("position").count;

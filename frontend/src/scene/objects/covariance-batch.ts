@@ -1,15 +1,15 @@
 import { Matrix4, Quaternion, Vector3, type Box3, type Object3D } from "three";
 import { CopyBatch } from "./copy-batch";
 import { principalAxes } from "./eigen";
-import { ballGeometry, canGeometry, coneGeometry } from "./geometries";
+import { sphereGeometry, cylinderGeometry, coneGeometry } from "./geometries";
 
-/** RViz's CovarianceProperty; null where a part is not drawn. Colours as 0xrrggbb. */
+/** RViz's CovarianceProperty; null for a part that is not drawn. Colours as 0xrrggbb. */
 export interface CovarianceStyle {
   position: { color: number; alpha: number; scale: number } | null;
   orientation: {
-    /** Deviations about the axes of the pose, not of the frame it is given in. */
+    /** Whether deviations are about the axes of the pose instead of those of its frame. */
     local: boolean;
-    /** For the rotations about x, y and z. */
+    /** The colours of the rotations about x, y and z. */
     colors: readonly [number, number, number];
     alpha: number;
     offset: number;
@@ -17,16 +17,16 @@ export interface CovarianceStyle {
   } | null;
 }
 
-/** Thickness of flat shapes. */
+/** The thickness of flat shapes, m. */
 const FLAT = 0.001;
-/** Angles as large as this and larger look alike. */
-const MOST_RADIANS = (89 * Math.PI) / 180;
+/** Larger angles are clamped to this, because they look alike. */
+const MAX_RADIANS = (89 * Math.PI) / 180;
 const SEGMENTS = 24;
 
 /**
- * How uncertain poses are, in three draw calls: an ellipsoid for the position and, for the orientation, a disc on each
- * axis that shows the possible tilt of the axis. A pose in a plane (no deviation in z, roll and pitch) has an ellipse and a
- * triangle that shows its possible turn. All of it as RViz's CovarianceVisual.
+ * The covariances of poses in three draw calls: an ellipsoid for the position and, for the orientation, a disc on each
+ * axis that shows its possible tilt. A planar pose (no deviation in z, roll and pitch) has an ellipse, and a triangle
+ * that shows its possible rotation. All of it is drawn as by RViz's CovarianceVisual.
  */
 export class CovarianceBatch {
   private readonly balls: CopyBatch;
@@ -37,12 +37,12 @@ export class CovarianceBatch {
   private readonly root = new Matrix4();
 
   constructor(parent: Object3D) {
-    this.balls = new CopyBatch(parent, ballGeometry(SEGMENTS));
-    this.discs = new CopyBatch(parent, canGeometry(SEGMENTS));
+    this.balls = new CopyBatch(parent, sphereGeometry(SEGMENTS));
+    this.discs = new CopyBatch(parent, cylinderGeometry(SEGMENTS));
     this.cones = new CopyBatch(parent, coneGeometry(SEGMENTS));
   }
 
-  /** Starts over; at most `expected` poses will follow. */
+  /** Removes all covariances; at most `expected` poses will be added. */
   begin(expected: number): void {
     this.balls.begin(expected);
     this.discs.begin(expected * 3);
@@ -52,9 +52,9 @@ export class CovarianceBatch {
   /**
    * Adds the covariance of a pose.
    *
-   * @param frame the frame that the pose is given in.
-   * @param pose x, y, z, qx, qy, qz, qw in that frame.
-   * @param covariance 36 numbers, row by row over x, y, z and the rotations about them.
+   * @param frame - the pose of the frame in which `pose` is given.
+   * @param pose - x, y, z, qx, qy, qz, qw in that frame.
+   * @param covariance - 36 numbers, row by row over x, y, z and the rotations about them.
    */
   add(frame: Matrix4, pose: Float32Array, covariance: Float32Array, style: CovarianceStyle): void {
     const c = (row: number, column: number): number => covariance[row * 6 + column] ?? 0;
@@ -64,11 +64,11 @@ export class CovarianceBatch {
       const { color, alpha, scale } = style.position;
       this.root.makeTranslation(at).premultiply(frame);
       const shape = inPlane
-        ? spread([c(0, 0), c(0, 1), 0, c(1, 0), c(1, 1), 0, 0, 0, 0])
-        : spread([c(0, 0), c(0, 1), c(0, 2), c(1, 0), c(1, 1), c(1, 2), c(2, 0), c(2, 1), c(2, 2)]);
+        ? deviationsOf([c(0, 0), c(0, 1), 0, c(1, 0), c(1, 1), 0, 0, 0, 0])
+        : deviationsOf([c(0, 0), c(0, 1), c(0, 2), c(1, 0), c(1, 1), c(1, 2), c(2, 0), c(2, 1), c(2, 2)]);
       if (shape) {
-        const [x, y, z] = shape.deviations.map((each) => 2 * each * scale) as [number, number, number];
-        const size = this.scale.makeScale(thick(x), thick(y), thick(z));
+        const [x, y, z] = shape.deviations.map((deviation) => 2 * deviation * scale) as [number, number, number];
+        const size = this.scale.makeScale(atLeastFlat(x), atLeastFlat(y), atLeastFlat(z));
         this.balls.add(this.matrix.copy(this.root).multiply(shape.axes).multiply(size), 0, alpha, color);
       }
     }
@@ -94,14 +94,14 @@ export class CovarianceBatch {
     for (const batch of [this.balls, this.discs, this.cones]) batch.dispose();
   }
 
-  /** Its tip is at the pose, its base `offset` along x. */
+  /** Adds a triangle with its tip at the pose and its base at `offset` along x. */
   private addTriangle(variance: number, style: NonNullable<CovarianceStyle["orientation"]>): void {
     const { offset, scale, alpha, colors } = style;
     if (!(variance >= 0) || offset <= 0) return;
-    const width = offset * opening(2 * Math.sqrt(variance) * scale);
-    // The cone of the batch has its base at the origin and its tip along x.
+    const width = offset * widthOfAngle(2 * Math.sqrt(variance) * scale);
+    // The batch's cone has its base at the origin and its tip along x: turn it around.
     this.matrix.makeTranslation(offset, 0, 0).premultiply(this.root);
-    this.cones.add(this.matrix.multiply(this.scale.makeScale(-offset, -thick(width), FLAT)), 0, alpha, colors[2]);
+    this.cones.add(this.matrix.multiply(this.scale.makeScale(-offset, -atLeastFlat(width), FLAT)), 0, alpha, colors[2]);
   }
 
   private addDiscs(
@@ -111,9 +111,9 @@ export class CovarianceBatch {
     const { offset, scale, alpha, colors } = style;
     for (const axis of [0, 1, 2]) {
       const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-      const shape = spread([c(3 + u, 3 + u), c(3 + u, 3 + v), 0, c(3 + v, 3 + u), c(3 + v, 3 + v), 0, 0, 0, 0]);
+      const shape = deviationsOf([c(3 + u, 3 + u), c(3 + u, 3 + v), 0, c(3 + v, 3 + u), c(3 + v, 3 + v), 0, 0, 0, 0]);
       if (!shape || offset <= 0) continue;
-      const [x, y] = shape.deviations.map((each) => thick(offset * opening(2 * each * scale)));
+      const [x, y] = shape.deviations.map((deviation) => atLeastFlat(offset * widthOfAngle(2 * deviation * scale)));
       this.matrix.copy(this.root).multiply(DISCS[axis] ?? DISCS[2]).multiply(this.scale.makeTranslation(0, 0, offset));
       this.matrix.multiply(shape.axes).multiply(this.scale.makeScale(x ?? FLAT, y ?? FLAT, FLAT));
       this.discs.add(this.matrix, 0, alpha, colors[axis] ?? colors[2]);
@@ -122,8 +122,8 @@ export class CovarianceBatch {
 }
 
 /**
- * For each axis: z is that axis, and x and y are where rotations about the two axes after it move it. RViz has these two
- * the other way round for z.
+ * For each axis: z is that axis, and x and y are the directions in which rotations about the two following axes move
+ * it. For the z axis, RViz swaps these two.
  */
 const DISCS = [
   new Matrix4().makeBasis(new Vector3(0, 0, 1), new Vector3(0, -1, 0), new Vector3(1, 0, 0)),
@@ -133,19 +133,21 @@ const DISCS = [
 
 type Matrix3Rows = Parameters<typeof principalAxes>[0];
 
-/** Standard deviations along their axes; null for rows that are not a covariance; RViz does not draw them either. */
-function spread(rows: Matrix3Rows): { deviations: number[]; axes: Matrix4 } | null {
+/**
+ * Returns standard deviations and their axes; null for rows that are not a covariance, which RViz does not draw either.
+ */
+function deviationsOf(rows: Matrix3Rows): { deviations: number[]; axes: Matrix4 } | null {
   const { values, axes } = principalAxes(rows);
   const most = Math.max(...values.map(Math.abs));
   if (!Number.isFinite(most) || values.some((value) => value < -1e-6 * most)) return null;
   return { deviations: values.map((value) => Math.sqrt(Math.max(0, value))), axes };
 }
 
-/** The width of an angle at a distance of one metre. */
-function opening(radians: number): number {
-  return 2 * Math.tan(Math.min(radians / 2, MOST_RADIANS));
+/** Returns the width of an angle at a distance of one metre. */
+function widthOfAngle(radians: number): number {
+  return 2 * Math.tan(Math.min(radians / 2, MAX_RADIANS));
 }
 
-function thick(size: number): number {
+function atLeastFlat(size: number): number {
   return Math.max(size, FLAT);
 }

@@ -1,9 +1,9 @@
 import { Matrix4 } from "three";
 
-/** Principal values of a symmetric matrix and, as columns of a rotation, their axes. */
-export interface Principal {
+/** The eigenvalues of a symmetric matrix, and its eigenvectors as columns of a rotation. */
+export interface PrincipalAxes {
   values: [number, number, number];
-  /** Right-handed. */
+  /** The axes, right-handed. */
   axes: Matrix4;
 }
 
@@ -15,11 +15,11 @@ const PLANES = [
 ] as const;
 
 /**
- * Principal axes by Jacobi's rotations.
+ * Computes principal axes by Jacobi rotations.
  *
- * @param m row by row; only the upper triangle is read.
+ * @param m - row by row; only the upper triangle is read.
  */
-export function principalAxes(m: readonly [number, number, number, number, number, number, number, number, number]): Principal {
+export function principalAxes(m: readonly [number, number, number, number, number, number, number, number, number]): PrincipalAxes {
   const a = [
     [m[0], m[1], m[2]],
     [m[1], m[4], m[5]],

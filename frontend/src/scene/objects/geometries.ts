@@ -11,19 +11,19 @@ import {
 } from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 
-/** Shapes of size one, shared by everything that scales them; cylinder and cone along z. */
+/** Shapes of unit size (radius 1, edge 1), shared by everything that scales them; cylinder and cone along z. */
 export const unitBox = new BoxGeometry(1, 1, 1);
 export const unitCylinder = new CylinderGeometry(1, 1, 1, 40).rotateX(Math.PI / 2);
 export const unitCone = new ConeGeometry(1, 1, 40).rotateX(Math.PI / 2);
 export const unitPlane = new PlaneGeometry(1, 1);
 export const unitSphere = new SphereGeometry(1, 32, 20).rotateX(Math.PI / 2);
-/** A unit sphere for where it is seen from afar. */
+/** A unit sphere with fewer vertices, for spheres that look small. */
 export const smallSphere = new SphereGeometry(1, 16, 10).rotateX(Math.PI / 2);
 
 const capsules = new Map<number, BufferGeometry>();
 
-/** A capsule of radius 1 along z whose cylinder is `length` long. */
-export function capsule(length: number): BufferGeometry {
+/** Returns a capsule of radius 1 along z whose cylinder has this length. */
+export function capsuleGeometry(length: number): BufferGeometry {
   let geometry = capsules.get(length);
   if (!geometry) {
     geometry = new CapsuleGeometry(1, length, 12, 32).rotateX(Math.PI / 2);
@@ -33,8 +33,8 @@ export function capsule(length: number): BufferGeometry {
 }
 
 /**
- * Three cylinders along x, y and z in red, green and blue, as RViz's Axes. Metres. What RViz calls the radius it draws as
- * the thickness of the arms, so that axes of length 1 and radius 0.1 are ten times as long as they are thick.
+ * Returns three cylinders along x, y and z in red, green and blue, as RViz's Axes; m. Like RViz, this uses the radius
+ * as the thickness of the arms, so that axes of length 1 and radius 0.1 are ten times as long as they are thick.
  */
 export function axesGeometry(length: number, radius: number, segments: number): BufferGeometry {
   const arm = (): BufferGeometry => rodGeometry(segments).scale(length, radius, radius);
@@ -45,7 +45,10 @@ export function axesGeometry(length: number, radius: number, segments: number): 
   ]);
 }
 
-/** A white rod from the origin one metre along x, with a diameter of one metre, closed at one end: the other is hidden. */
+/**
+ * Returns a white rod of one metre from the origin along x, with a diameter of one metre. It is closed at one end only,
+ * because the other is hidden.
+ */
 export function rodGeometry(segments: number, closedAt: "origin" | "end" = "end"): BufferGeometry {
   const open = true;
   const tube = new CylinderGeometry(0.5, 0.5, 1, segments, 1, open).rotateZ(-Math.PI / 2).translate(0.5, 0, 0);
@@ -55,27 +58,27 @@ export function rodGeometry(segments: number, closedAt: "origin" | "end" = "end"
   return paint(mergeGeometries([tube, disc]), 1, 1, 1);
 }
 
-/** A white cone with its base of one metre diameter at the origin and its tip one metre along x. */
+/** Returns a white cone with its base, one metre in diameter, at the origin, and its tip one metre along x. */
 export function coneGeometry(segments: number): BufferGeometry {
   return paint(new ConeGeometry(0.5, 1, segments).rotateZ(-Math.PI / 2).translate(0.5, 0, 0), 1, 1, 1);
 }
 
-/** A white sphere with a diameter of one metre. */
-export function ballGeometry(segments: number): BufferGeometry {
+/** Returns a white sphere with a diameter of one metre. */
+export function sphereGeometry(segments: number): BufferGeometry {
   return paint(new SphereGeometry(0.5, segments, Math.ceil(segments / 2)).rotateX(Math.PI / 2), 1, 1, 1);
 }
 
-/** A white cylinder along z, one metre long and one metre in diameter, closed. */
-export function canGeometry(segments: number): BufferGeometry {
+/** Returns a closed white cylinder along z, one metre long and one metre in diameter. */
+export function cylinderGeometry(segments: number): BufferGeometry {
   return paint(new CylinderGeometry(0.5, 0.5, 1, segments).rotateX(Math.PI / 2), 1, 1, 1);
 }
 
-/** A white cube of one metre. */
+/** Returns a white unit cube. */
 export function cubeGeometry(): BufferGeometry {
   return paint(new BoxGeometry(1, 1, 1), 1, 1, 1);
 }
 
-/** Gives every vertex the same colour, 0 to 1. */
+/** Gives all vertices the same colour, 0 to 1. */
 export function paint(geometry: BufferGeometry, r: number, g: number, b: number): BufferGeometry {
   const count = geometry.getAttribute("position").count;
   const colors = new Float32Array(count * 3);

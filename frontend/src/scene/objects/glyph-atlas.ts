@@ -6,7 +6,7 @@ const MARGIN_PX = 6;
 const CELL_HEIGHT_PX = 60;
 const FONT = `600 ${FONT_PX}px "Liberation Sans", "Noto Sans", Arial, "Noto Sans CJK SC", sans-serif`;
 
-/** The place of a character in the atlas; sizes in units of the line height. */
+/** A character's place in the atlas; sizes relative to the line height. */
 export interface Glyph {
   /** u, v of the lower left corner, width and height, 0 to 1. */
   uv: readonly [number, number, number, number];
@@ -14,7 +14,7 @@ export interface Glyph {
   advance: number;
 }
 
-/** One texture with every character that was ever asked for, white with a dark rim. */
+/** A texture with every character requested so far, white with a dark outline. */
 export class GlyphAtlas {
   readonly texture: CanvasTexture;
   private readonly context: CanvasRenderingContext2D;
@@ -34,7 +34,7 @@ export class GlyphAtlas {
     this.texture.premultiplyAlpha = true;
   }
 
-  /** The glyph of a character, drawn when it is new; a full atlas answers with the blank. */
+  /** Returns the glyph of a character, and draws it if it is new; an empty glyph once the atlas is full. */
   glyph(character: string): Glyph {
     let glyph = this.glyphs.get(character);
     if (!glyph) {

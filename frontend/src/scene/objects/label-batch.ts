@@ -32,10 +32,10 @@ const FRAGMENT = /* glsl */ `
     gl_FragColor = vec4(ink.rgb * mix(1.0, 0.7, vFade.x), ink.a) * vFade.y;
   }
 `;
-/** Floats of a vertex: anchor 3, corner 2, uv 2, fade 2. */
+/** Floats per vertex: anchor 3, corner 2, uv 2, fade 2. */
 const STRIDE = 9;
 const FLOATS_PER_GLYPH = STRIDE * 4;
-/** Corners of a glyph as parts of its width and height. */
+/** The corners of a glyph, in units of its width and height. */
 const CORNERS = [
   [0, 0],
   [1, 0],
@@ -43,11 +43,14 @@ const CORNERS = [
   [0, 1],
 ] as const;
 
-/** Any number of short texts facing the camera, sized in metres, in one draw call and drawn over everything. */
+/** Any number of short texts that face the camera, sized in metres, in one draw call and drawn over everything. */
 export class LabelBatch {
   readonly root: Mesh<BufferGeometry, ShaderMaterial>;
   private readonly atlas = new GlyphAtlas();
-  /** Per text, x from the middle, width and u v width height of each glyph, for a line height of 1. */
+  /**
+   * For each text and each glyph: x from the centre, width, and u, v, width, height in the atlas, for a line height of
+   * 1.
+   */
   private readonly layouts = new Map<string, Float32Array>();
   private data = new Float32Array(0);
   private buffer: InterleavedBuffer | null = null;
@@ -69,13 +72,13 @@ export class LabelBatch {
     this.root.renderOrder = 10;
   }
 
-  /** Starts over; texts of `characters` in all will follow. */
+  /** Removes all texts; texts with this many characters in total will be added. */
   begin(characters: number): void {
     this.glyphs = 0;
     if (this.data.length < characters * FLOATS_PER_GLYPH) this.allocate(Math.max(64, Math.ceil(characters * 1.5)));
   }
 
-  /** Adds a text centred below `anchor`; `height` is that of a line, m. */
+  /** Adds a text centred below `anchor`; `height` is the height of a line, m. */
   add(text: string, anchor: Vector3, height: number, grey: number, alpha: number): void {
     const { data } = this;
     const layout = this.layout(text);

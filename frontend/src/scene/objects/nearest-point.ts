@@ -1,13 +1,13 @@
-/** A point that a ray comes close to. */
+/** The point nearest to the start of a ray. */
 export interface NearPoint {
   index: number;
-  /** Along the ray, m. */
+  /** The distance along the ray, m. */
   distance: number;
 }
 
 /**
- * The first point along a ray that is within `radius` m of it, or within `slope` times its distance: that is what a
- * pointer of some pixels covers. `origin` and `direction` (of length one) are in the frame of the points.
+ * Returns the first point along a ray within `radius` m of it, or within `slope` times its distance, which is the area
+ * that a pointer of some pixels covers. `origin` and `direction` (a unit vector) are in the frame of the points.
  */
 export function nearestPoint(
   positions: Float32Array,

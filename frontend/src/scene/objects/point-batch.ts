@@ -12,15 +12,17 @@ import {
 import { OPAQUE_FROM } from "../materials";
 import { pointMaterial, setLook, type PointLook, type PointVariant } from "./point-material";
 
-/** Up to so many points are drawn with corners, which may be larger than the screen; software renderers are slow at it. */
-const MOST_QUADS = 20_000;
+/**
+ * Up to this number, points are drawn as quads, which may be larger than the screen but are slow on software renderers.
+ */
+const MAX_QUADS = 20_000;
 const CORNERS = [-1, -1, 1, -1, 1, 1, -1, 1] as const;
 
-/** Many points of one look in one draw call. */
+/** Many points with one look in one draw call. */
 export class PointBatch {
   readonly root = new Group();
   positions: Float32Array = new Float32Array(0);
-  /** Red, green, blue and alpha of each point; nothing where all have the colour of the look. */
+  /** Red, green, blue and alpha of each point; empty if all have the colour of the look. */
   colors: Uint8Array = new Uint8Array(0);
   private object: Points<BufferGeometry, ShaderMaterial> | Mesh<BufferGeometry, ShaderMaterial> | null = null;
   private variant = "";
@@ -32,7 +34,7 @@ export class PointBatch {
     return this.positions.length / 3;
   }
 
-  /** Takes points, x y z of each in m; `translucent`: some of the colours have less than full alpha. */
+  /** Sets the points, x y z of each in m; `translucent` if some colours have less than full alpha. */
   setPoints(positions: Float32Array, colors: Uint8Array, translucent: boolean): void {
     this.positions = positions;
     this.colors = colors;
@@ -41,7 +43,7 @@ export class PointBatch {
   }
 
   setLook(look: PointLook): void {
-    const remake = this.variant !== JSON.stringify(this.wanted(look));
+    const remake = this.variant !== JSON.stringify(this.variantFor(look));
     this.look = look;
     if (remake) this.build();
     else if (this.object) setLook(this.object.material, look);
@@ -52,19 +54,19 @@ export class PointBatch {
     this.clear();
   }
 
-  private wanted(look: PointLook): PointVariant {
+  private variantFor(look: PointLook): PointVariant {
     return {
       style: look.style,
       tinted: this.colors.length > 0,
-      quads: look.style !== "Points" && this.count <= MOST_QUADS,
+      quads: look.style !== "Points" && this.count <= MAX_QUADS,
       seeThrough: look.alpha < OPAQUE_FROM || this.translucent,
     };
   }
 
   private build(): void {
-    const variant = this.wanted(this.look);
+    const variant = this.variantFor(this.look);
     const geometry = variant.quads ? quads(this.positions, this.colors) : points(this.positions, this.colors);
-    // To sort by distance three.js would look at every point.
+    // three.js would look at every point to sort by distance.
     geometry.boundingSphere = new Sphere();
     const key = JSON.stringify(variant);
     if (this.object && key === this.variant) {
@@ -78,7 +80,7 @@ export class PointBatch {
     const material = pointMaterial(variant);
     setLook(material, this.look);
     this.object = variant.quads ? new Mesh(geometry, material) : new Points(geometry, material);
-    // Their bounds cost more than drawing those outside of the view does.
+    // Computing their bounds costs more than drawing the points outside the view.
     this.object.frustumCulled = false;
     this.object.onBeforeRender = (renderer) => setViewport(renderer, material);
     this.root.add(this.object);
@@ -95,7 +97,7 @@ export class PointBatch {
 
 const area = new Vector4();
 
-/** The shader counts in pixels of the render target: the canvas, or the image of a camera. */
+/** Sets the size of the render target in pixels, which the shader needs: the canvas, or a camera's image. */
 function setViewport(renderer: WebGLRenderer, material: ShaderMaterial): void {
   renderer.getCurrentViewport(area);
   const uniform = material.uniforms["viewport"];
@@ -109,7 +111,7 @@ function points(positions: Float32Array, colors: Uint8Array): BufferGeometry {
   return geometry;
 }
 
-/** Four corners for each point. */
+/** Returns four corners for each point. */
 function quads(positions: Float32Array, colors: Uint8Array): BufferGeometry {
   const count = positions.length / 3;
   const [places, corners] = [new Float32Array(count * 12), new Float32Array(count * 8)];

@@ -3,33 +3,34 @@ import { Color, GLSL3, ShaderMaterial, Vector3 } from "three";
 /** RViz's styles of points. */
 export type PointStyle = "Points" | "Squares" | "Flat Squares" | "Spheres" | "Boxes" | "Tiles";
 
-/** The look of points. */
+/** How points are drawn. */
 export interface PointLook {
   style: PointStyle;
-  /** Sides along x, y and z of the points' frame, m; a style that faces the camera has the first two. */
+  /** Sizes along x, y and z of the points' frame, m; styles that face the camera use the first two. */
   size: readonly [number, number, number];
-  /** Size of the style Points, pixels. */
+  /** The size of points of the style Points, pixels. */
   pixels: number;
-  /** Size by the depth along z of the points' frame, m per m; 0 for `size`. */
+  /** Size per depth along z of the points' frame, m per m; 0 to use `size`. */
   perDepth: number;
-  /** Of points without colours of their own. */
+  /** The colour of points without colours of their own. */
   color: string;
   alpha: number;
 }
 
-/** The variants of the shader; each compiles once for all that look so. */
+/** A variant of the shader, which is compiled once for all batches that use it. */
 export interface PointVariant {
   style: PointStyle;
-  /** Points have colours of their own. */
+  /** Whether points have colours of their own. */
   tinted: boolean;
-  /** Each point has four corners; otherwise it is a point of the graphics library, whose size is limited. */
+  /** Whether each point is a quad; otherwise it is a point of the graphics library, whose size is limited. */
   quads: boolean;
   seeThrough: boolean;
 }
 
-// A point is drawn on a square that faces the camera and holds it. `place` is where on that square a fragment is, -1 to
-// 1; `hold` is half its side, m. Solid styles follow the ray through the fragment into the point. All but `place` is the
-// same all over a point, hence flat: what is interpolated costs software renderers a fifth more for each point.
+// A point is drawn on a square that faces the camera and contains it. `place` is the position of a fragment on that
+// square, -1 to 1; `halfSide` is half the side of the square, m. Solid styles trace the ray through the fragment into the
+// point. All other values are constant over a point and therefore flat: interpolation makes software renderers a fifth
+// slower per point.
 const VERTEX = /* glsl */ `
   uniform vec3 extent;
   uniform vec3 color;
@@ -47,10 +48,10 @@ const VERTEX = /* glsl */ `
   flat out vec4 vColor;
   #ifdef SOLID
     flat out vec3 middle;
-    flat out vec2 hold;
+    flat out vec2 halfSide;
     flat out vec3 side;
   #else
-    vec2 hold;
+    vec2 halfSide;
     vec3 side;
   #endif
 
@@ -69,19 +70,19 @@ const VERTEX = /* glsl */ `
     // Pixels of a metre there, along x and y of the screen.
     vec2 scale = vec2(projectionMatrix[0][0], projectionMatrix[1][1]) * 0.5 * viewport / gl_Position.w;
     #if defined(FIXED)
-      hold = vec2(pixels * 0.5) / scale;
+      halfSide = vec2(pixels * 0.5) / scale;
     #elif defined(SOLID)
-      hold = vec2(length(side) * 0.5 * REACH);
+      halfSide = vec2(length(side) * 0.5 * REACH);
     #else
-      hold = side.xy * 0.5;
+      halfSide = side.xy * 0.5;
     #endif
-    hold = max(hold, vec2(0.5) / scale);
+    halfSide = max(halfSide, vec2(0.5) / scale);
     #ifdef QUADS
       place = corner;
-      gl_Position = projectionMatrix * vec4(eye.xyz + vec3(corner * hold, 0.0), 1.0);
+      gl_Position = projectionMatrix * vec4(eye.xyz + vec3(corner * halfSide, 0.0), 1.0);
     #else
-      gl_PointSize = max(hold.x * scale.x, hold.y * scale.y) * 2.0;
-      hold = vec2(gl_PointSize * 0.5) / scale;
+      gl_PointSize = max(halfSide.x * scale.x, halfSide.y * scale.y) * 2.0;
+      halfSide = vec2(gl_PointSize * 0.5) / scale;
     #endif
   }
 `;
@@ -93,7 +94,7 @@ const FRAGMENT = /* glsl */ `
   flat in vec4 vColor;
   #ifdef SOLID
     flat in vec3 middle;
-    flat in vec2 hold;
+    flat in vec2 halfSide;
     flat in vec3 side;
   #endif
   #ifdef QUADS
@@ -118,7 +119,7 @@ const FRAGMENT = /* glsl */ `
       paint += (length(paint) > 0.5 ? -0.2 : 0.2) * max(edge.x, edge.y);
     #endif
     #ifdef SOLID
-      vec3 through = middle + vec3(at * hold, 0.0);
+      vec3 through = middle + vec3(at * halfSide, 0.0);
       bool parallel = projectionMatrix[3][3] == 1.0;
       mat3 turn = mat3(modelViewMatrix);
       // The ray in the frame of the points, from the middle of this one.
@@ -153,12 +154,13 @@ const DEFINES: Readonly<Record<PointStyle, Record<string, string>>> = {
   Squares: { RIMMED: "" },
   "Flat Squares": {},
   Spheres: { ROUND: "" },
-  // Seen from anywhere a box is within the ball around it; at the side of a wide view that ball is seen as an ellipse.
+  // From any direction, a box is within its bounding sphere; at the side of a wide view, that sphere appears as an
+  // ellipse.
   Boxes: { SOLID: "", REACH: "1.12" },
   Tiles: { SOLID: "", FLAT: "", REACH: "1.12" },
 };
 
-/** The material of a variant; `setLook` and `setViewport` say the rest. */
+/** Returns the material of a variant; `setLook` and `setViewport` set its uniforms. */
 export function pointMaterial({ style, tinted, quads, seeThrough }: PointVariant): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
@@ -178,7 +180,7 @@ export function pointMaterial({ style, tinted, quads, seeThrough }: PointVariant
   });
 }
 
-/** Takes what needs no other shader. */
+/** Applies the parts of a look that do not need another shader. */
 export function setLook({ uniforms }: ShaderMaterial, look: PointLook): void {
   (uniforms["extent"]?.value as Vector3).fromArray(look.size);
   (uniforms["color"]?.value as Color).set(look.color);

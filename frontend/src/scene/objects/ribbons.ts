@@ -1,26 +1,26 @@
-/** Vertices of lines that are drawn as ribbons: two at each point, one on either side. */
+/** The vertices of lines drawn as ribbons: two at each point, one on each side. */
 export interface Ribbons {
   positions: Float32Array;
-  /** Where the line goes at each vertex; the ribbon's width is across it and across the line of sight. */
+  /** The direction of the line at each vertex; the ribbon extends perpendicular to it and to the line of sight. */
   directions: Float32Array;
-  /** -0.5 and 0.5. */
+  /** The side of each vertex, -0.5 or 0.5. */
   sides: Float32Array;
-  /** r g b a for each vertex, null without colours. */
+  /** r g b a for each vertex; null without colours. */
   colors: Float32Array | null;
   indices: Uint32Array;
 }
 
 /**
- * Ribbons along line strips. At a corner both parts of the line share their vertices, which stand across the middle of
- * the two directions: no gap is seen there.
+ * Returns ribbons along line strips. At a corner, both parts of the line share vertices perpendicular to the mean of
+ * the two directions, so that there is no gap.
  *
- * @param strips x y z of the points of each strip.
- * @param colors r g b a, 0 to 1, of the points of each strip.
+ * @param strips - x y z of the points of each strip.
+ * @param colors - r g b a, 0 to 1, of the points of each strip.
  */
 export function ribbons(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): Ribbons {
   const points = strips.reduce((sum, strip) => sum + strip.length / 3, 0);
   const pieces = strips.reduce((sum, strip) => sum + Math.max(0, strip.length / 3 - 1), 0);
-  const made: Ribbons = {
+  const result: Ribbons = {
     positions: new Float32Array(points * 6),
     directions: new Float32Array(points * 6),
     sides: new Float32Array(points * 2),
@@ -35,21 +35,21 @@ export function ribbons(strips: readonly Float32Array[], colors: readonly Float3
       const along = direction(strip, i);
       const color = colors?.[number]?.subarray(i * 4, i * 4 + 4);
       for (const side of [-0.5, 0.5]) {
-        made.positions.set(point, vertex * 3);
-        made.directions.set(along, vertex * 3);
-        made.sides[vertex] = side;
-        if (color) made.colors?.set(color, vertex * 4);
+        result.positions.set(point, vertex * 3);
+        result.directions.set(along, vertex * 3);
+        result.sides[vertex] = side;
+        if (color) result.colors?.set(color, vertex * 4);
         vertex += 1;
       }
       if (i === 0) continue;
-      made.indices.set([vertex - 4, vertex - 3, vertex - 1, vertex - 4, vertex - 1, vertex - 2], index);
+      result.indices.set([vertex - 4, vertex - 3, vertex - 1, vertex - 4, vertex - 1, vertex - 2], index);
       index += 6;
     }
   });
-  return made;
+  return result;
 }
 
-/** Both ends of every piece of a line strip, one after the other. */
+/** Returns both ends of every segment of a line strip. */
 export function segmentsOf(strip: Float32Array, itemSize = 3): Float32Array {
   const count = Math.max(0, strip.length / itemSize - 1);
   const result = new Float32Array(count * 2 * itemSize);
@@ -59,22 +59,22 @@ export function segmentsOf(strip: Float32Array, itemSize = 3): Float32Array {
   return result;
 }
 
-/** A strip of two points for each segment (x y z, x y z). */
+/** Returns a strip of two points for each segment (x y z, x y z). */
 export function stripsOf(segments: Float32Array, itemSize = 3): Float32Array[] {
   const size = 2 * itemSize;
   return Array.from({ length: Math.floor(segments.length / size) }, (_, i) => segments.subarray(i * size, (i + 1) * size));
 }
 
 function direction(strip: Float32Array, i: number): [number, number, number] {
-  const before = unit(strip, i - 1);
-  const after = unit(strip, i);
+  const before = segmentDirection(strip, i - 1);
+  const after = segmentDirection(strip, i);
   const sum: [number, number, number] = [before[0] + after[0], before[1] + after[1], before[2] + after[2]];
-  // Where the line turns right back there is no middle of both directions.
+  // Where the line reverses, the mean of both directions is zero.
   return Math.hypot(...sum) > 1e-6 ? sum : after;
 }
 
-/** Direction from point `i` to the next, nothing beyond the ends and between equal points. */
-function unit(strip: Float32Array, i: number): [number, number, number] {
+/** Returns the unit vector from point `i` to the next; zero beyond the ends and between equal points. */
+function segmentDirection(strip: Float32Array, i: number): [number, number, number] {
   if (i < 0 || (i + 2) * 3 > strip.length) return [0, 0, 0];
   const part = (axis: number): number => (strip[i * 3 + 3 + axis] ?? 0) - (strip[i * 3 + axis] ?? 0);
   const [x, y, z] = [part(0), part(1), part(2)];

@@ -1,6 +1,6 @@
 import { Mesh, OrthographicCamera, PlaneGeometry, Scene, type ShaderMaterial, type WebGLRenderer } from "three";
 
-/** Vertex shader of materials that cover the whole image; gives `vUv`. */
+/** The vertex shader of materials that cover the whole image; it provides `vUv`. */
 export const SCREEN_VERTEX = /* glsl */ `
   varying vec2 vUv;
   void main() { vUv = uv; gl_Position = vec4(position.xy, 0.0, 1.0); }
@@ -19,7 +19,7 @@ export class ScreenQuad {
     this.scene.add(this.quad);
   }
 
-  /** Draws over the existing image. */
+  /** Draws the material over the existing image. */
   render(renderer: WebGLRenderer): void {
     renderer.autoClear = false;
     renderer.render(this.scene, this.camera);

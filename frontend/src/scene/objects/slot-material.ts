@@ -1,7 +1,7 @@
 import { DataTexture, DoubleSide, FloatType, RGBAFormat, ShaderMaterial, type Matrix4, type Texture } from "three";
 import { SURFACE_LIGHT } from "../light";
 
-/** Texels of a slot: three rows of the matrix, then grey, alpha and colour. */
+/** Texels of a slot: three rows of the matrix, then one with grey, alpha and colour. */
 export const TEXELS_PER_SLOT = 4;
 const SLOTS_PER_ROW = 64;
 
@@ -41,7 +41,8 @@ const FRAGMENT = /* glsl */ `
   void main() { gl_FragColor = vColor; }
 `;
 
-// Both sides are lit, as by three.js: a normal belongs to the side that its triangle shows when its corners turn left.
+// Both sides are lit, as in three.js: a normal belongs to the side from which the triangle's corners run
+// counterclockwise.
 const LIT_VERTEX = /* glsl */ `
   ${READING}
   flat varying vec3 vColor;
@@ -65,14 +66,14 @@ const LIT_FRAGMENT = /* glsl */ `
   }
 `;
 
-/** A texture for so many slots, 64 in a row. */
+/** Returns a texture with this number of slots, 64 in a row. */
 export function slotTexture(slots: number): DataTexture {
   const width = SLOTS_PER_ROW * TEXELS_PER_SLOT;
   const height = Math.max(1, Math.ceil(slots / SLOTS_PER_ROW));
   return new DataTexture(new Float32Array(width * height * 4), width, height, RGBAFormat, FloatType);
 }
 
-/** Writes into a slot a pose or other affine matrix and a colour 0xrrggbb; `data` is that of a texture, or alike. */
+/** Writes an affine matrix and a colour 0xrrggbb into a slot; `data` is that of a texture, or has the same layout. */
 export function writeSlot(data: Float32Array, slot: number, matrix: Matrix4, color: number, grey = 0, alpha = 1): void {
   const at = slot * TEXELS_PER_SLOT * 4;
   const m = matrix.elements;
@@ -85,15 +86,16 @@ export function writeSlot(data: Float32Array, slot: number, matrix: Matrix4, col
 }
 
 /**
- * A material for copies that read their matrix, colour, grey and alpha from a texture. Lit as everything else by the
- * light at the camera, but at the vertices: small things do not show the difference, software renderers do.
+ * Returns a material for copies that read their matrix, colour, grey and alpha from a texture. Light is computed like
+ * that of other objects, but at the vertices: the difference does not show on small objects, and software renderers are
+ * faster.
  */
 export function slotMaterial(slots: { value: Texture }, isSoft = { value: false }): ShaderMaterial {
   return new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { slots, isSoft } });
 }
 
 /**
- * A material for opaque surfaces that are seen from both sides and lit at each pixel, as three.js does by the light at
+ * Returns a material for opaque, double-sided surfaces that are lit at each pixel, as three.js does for the light at
  * the camera.
  */
 export function litSlotMaterial(slots: { value: Texture }, isSoft: { value: boolean }): ShaderMaterial {

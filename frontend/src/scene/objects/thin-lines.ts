@@ -7,10 +7,10 @@ import {
   type Box3,
   type ColorRepresentation,
 } from "three";
-import { areSeenThrough, blend } from "../materials";
+import { areTranslucent, blend } from "../materials";
 import { segmentsOf } from "./ribbons";
 
-/** Lines one pixel wide, unlit; the same calls as `WideLines`. */
+/** Lines one pixel wide, unlit; with the same methods as `WideLines`. */
 export class ThinLines {
   readonly root = new LineSegments<BufferGeometry, LineBasicMaterial>(new BufferGeometry(), new LineBasicMaterial());
   private opacity = 1;
@@ -21,14 +21,14 @@ export class ThinLines {
     this.root.visible = false;
   }
 
-  /** Segments between pairs of points: x y z of both ends of each; `colors` r g b a of both ends, 0 to 1. */
+  /** Sets segments by x y z of both ends of each; `colors` has r g b a of both ends, 0 to 1. */
   setSegments(segments: Float32Array, colors: Float32Array | null = null): void {
     const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(segments, 3));
     if (colors) geometry.setAttribute("color", new BufferAttribute(colors, 4));
     this.root.geometry.dispose();
     this.root.geometry = geometry;
     this.show();
-    this.settle();
+    this.updateMaterial();
   }
 
   /** The number of segments. */
@@ -36,17 +36,20 @@ export class ThinLines {
     return (this.root.geometry.attributes["position"]?.count ?? 0) / 2;
   }
 
-  /** Whether they are to be seen. */
+  /** Whether the lines are shown. */
   set shown(shown: boolean) {
     this.isShown = shown;
     this.show();
   }
 
-  /** Lines through the points of each strip; `colors` r g b a of each point, 0 to 1, multiplied with the style's. */
+  /**
+   * Sets lines through the points of each strip; `colors` has r g b a of each point, 0 to 1, multiplied by the style's
+   * colour.
+   */
   setStrips(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): void {
     this.setSegments(
-      joined(strips.map((strip) => segmentsOf(strip))),
-      colors && joined(colors.map((each) => segmentsOf(each, 4))),
+      concatenated(strips.map((strip) => segmentsOf(strip))),
+      colors && concatenated(colors.map((color) => segmentsOf(color, 4))),
     );
   }
 
@@ -54,10 +57,10 @@ export class ThinLines {
     this.root.material.color = new Color(color);
     this.root.material.opacity = opacity;
     this.opacity = opacity;
-    this.settle();
+    this.updateMaterial();
   }
 
-  /** Makes `box` hold all lines, in the parent's frame. */
+  /** Expands `box` by all lines, in the parent's frame. */
   expandBox(box: Box3): void {
     if (this.root.visible) box.expandByObject(this.root);
   }
@@ -72,16 +75,16 @@ export class ThinLines {
     this.root.visible = this.isShown && this.count > 0;
   }
 
-  private settle(): void {
+  private updateMaterial(): void {
     const { material, geometry } = this.root;
     const colors = geometry.attributes["color"];
     material.vertexColors = colors !== undefined;
-    blend(material, areSeenThrough(this.opacity, colors));
+    blend(material, areTranslucent(this.opacity, colors));
   }
 }
 
-/** Arrays one after the other. */
-export function joined(parts: readonly Float32Array[]): Float32Array {
+/** Concatenates arrays. */
+export function concatenated(parts: readonly Float32Array[]): Float32Array {
   const result = new Float32Array(parts.reduce((sum, part) => sum + part.length, 0));
   let at = 0;
   for (const part of parts) {

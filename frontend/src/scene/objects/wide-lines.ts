@@ -8,7 +8,7 @@ import {
   type Box3,
   type ColorRepresentation,
 } from "three";
-import { areSeenThrough, blend } from "../materials";
+import { areTranslucent, blend } from "../materials";
 import { ribbons, stripsOf } from "./ribbons";
 
 const VERTEX = /* glsl */ `
@@ -39,8 +39,8 @@ const FRAGMENT = /* glsl */ `
 `;
 
 /**
- * Lines with a width in metres that turn towards the camera: RViz's billboard lines. One draw call, unlit; no GPU
- * instancing, see `CopyBatch`.
+ * Lines with a width in metres that face the camera: RViz's billboard lines. They are unlit and need one draw call,
+ * without GPU instancing, see `CopyBatch`.
  */
 export class WideLines {
   readonly root: Mesh<BufferGeometry, ShaderMaterial>;
@@ -56,36 +56,39 @@ export class WideLines {
     this.root.visible = false;
   }
 
-  /** Segments between pairs of points: x y z of both ends of each; `colors` r g b a of both ends, 0 to 1. */
+  /** Sets segments by x y z of both ends of each; `colors` has r g b a of both ends, 0 to 1. */
   setSegments(segments: Float32Array, colors: Float32Array | null = null): void {
     this.setStrips(stripsOf(segments), colors && stripsOf(colors, 4));
   }
 
-  /** Lines through the points of each strip; `colors` r g b a of each point, 0 to 1, multiplied with the style's. */
+  /**
+   * Sets lines through the points of each strip; `colors` has r g b a of each point, 0 to 1, multiplied by the style's
+   * colour.
+   */
   setStrips(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): void {
-    const made = ribbons(strips, colors);
-    const geometry = new BufferGeometry().setIndex(new BufferAttribute(made.indices, 1));
-    geometry.setAttribute("position", new BufferAttribute(made.positions, 3));
-    geometry.setAttribute("direction", new BufferAttribute(made.directions, 3));
-    geometry.setAttribute("side", new BufferAttribute(made.sides, 1));
-    if (made.colors) geometry.setAttribute("rgba", new BufferAttribute(made.colors, 4));
+    const result = ribbons(strips, colors);
+    const geometry = new BufferGeometry().setIndex(new BufferAttribute(result.indices, 1));
+    geometry.setAttribute("position", new BufferAttribute(result.positions, 3));
+    geometry.setAttribute("direction", new BufferAttribute(result.directions, 3));
+    geometry.setAttribute("side", new BufferAttribute(result.sides, 1));
+    if (result.colors) geometry.setAttribute("rgba", new BufferAttribute(result.colors, 4));
     this.root.geometry.dispose();
     this.root.geometry = geometry;
-    this.root.visible = made.indices.length > 0;
-    this.settle();
+    this.root.visible = result.indices.length > 0;
+    this.updateMaterial();
   }
 
-  /** `width` in metres. */
+  /** Sets the style; `width` in m. */
   setStyle(color: ColorRepresentation, opacity: number, width: number): void {
     const { r, g, b } = new Color(color);
     const { uniforms } = this.root.material;
     uniforms["color"] = { value: [r, g, b, opacity] };
     uniforms["width"] = { value: width };
     this.opacity = opacity;
-    this.settle();
+    this.updateMaterial();
   }
 
-  /** Makes `box` hold the middle of all lines, in the parent's frame. */
+  /** Expands `box` by the centre lines, in the parent's frame. */
   expandBox(box: Box3): void {
     if (this.root.visible) box.expandByObject(this.root);
   }
@@ -96,10 +99,10 @@ export class WideLines {
     this.root.material.dispose();
   }
 
-  private settle(): void {
+  private updateMaterial(): void {
     const { material, geometry } = this.root;
     const colors = geometry.attributes["rgba"];
     material.defines = colors ? { COLORED: "" } : {};
-    blend(material, areSeenThrough(this.opacity, colors));
+    blend(material, areTranslucent(this.opacity, colors));
   }
 }

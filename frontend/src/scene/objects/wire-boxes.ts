@@ -2,7 +2,7 @@ import { BoxGeometry, BufferGeometry, EdgesGeometry, Float32BufferAttribute, Lin
 
 const EDGES = new EdgesGeometry(new BoxGeometry(1, 1, 1)).getAttribute("position").array as Float32Array;
 
-/** The edges of cubes along the axes, seen through everything: RViz's marks of selected points. */
+/** The edges of axis-aligned cubes, visible through everything: RViz's marks of selected points. */
 export class WireBoxes {
   readonly root = new LineSegments(
     new BufferGeometry(),
@@ -15,7 +15,7 @@ export class WireBoxes {
     this.root.renderOrder = 9;
   }
 
-  /** `middles`: x y z of each cube, `side` its length, m. */
+  /** Sets the cubes: x y z of the centre of each, and the length of their sides, m. */
   set(middles: readonly number[], side: number): void {
     const corners = new Float32Array((middles.length / 3) * EDGES.length);
     for (let i = 0; i < corners.length; i++) {

@@ -2,8 +2,10 @@ import { Box3, ExtrudeGeometry, Path, PlaneGeometry, Shape as Outline, ShapeUtil
 import type { Submesh } from "../../protocol";
 import type { MeshPart } from "../meshes/mesh-template";
 
-/** The polygons x y x y ..., raised along z; polygons in others are holes, and polygons in holes are solid again. */
-export function extrusion(outlines: readonly (readonly number[])[], height: number): BufferGeometry {
+/**
+ * Extrudes polygons (x y x y ...) along z; a polygon within another is a hole, and one within a hole is solid again.
+ */
+export function extrudedPolygons(outlines: readonly (readonly number[])[], height: number): BufferGeometry {
   const polygons = outlines.map((numbers) => {
     return Array.from({ length: Math.floor(numbers.length / 2) }, (_, i) => new Vector2(numbers[2 * i], numbers[2 * i + 1]));
   }).filter((points) => points.length > 2);
@@ -21,7 +23,10 @@ export function extrusion(outlines: readonly (readonly number[])[], height: numb
   return new ExtrudeGeometry(shapes, { depth: height, bevelEnabled: false, steps: 1 });
 }
 
-/** The parts of a mesh that have a name, all for null; `offset` moves the mesh where its middle is to be the origin. */
+/**
+ * Returns the parts of a mesh with a name, or all parts for null; `offset` moves the mesh if its centre is to be the
+ * origin.
+ */
 export function submesh(parts: readonly MeshPart[], wanted: Submesh | null): { parts: readonly MeshPart[]; offset: Vector3 } {
   const offset = new Vector3();
   if (wanted === null) return { parts, offset };
@@ -39,13 +44,13 @@ export function submesh(parts: readonly MeshPart[], wanted: Submesh | null): { p
 }
 
 /**
- * A ground.
+ * Returns the surface of a heightmap.
  *
- * @param heights shares of the greatest height, row by row from the least y, each from the least x.
- * @param columns heights in a row.
- * @param size x, y, z of the ground, the offset of its middle, and the edge length that a texture covers, m.
+ * @param heights - heights relative to the maximum, row by row from the smallest y, each from the smallest x.
+ * @param columns - the number of heights in a row.
+ * @param size - x, y, z of the ground, the offset of its centre, and the side length that a texture covers, m.
  */
-export function ground(heights: Float32Array, columns: number, size: readonly number[]): BufferGeometry {
+export function heightmapGeometry(heights: Float32Array, columns: number, size: readonly number[]): BufferGeometry {
   const [x = 1, y = 1, z = 1, dx = 0, dy = 0, dz = 0, tile = 1] = size;
   const rows = Math.floor(heights.length / Math.max(1, columns));
   const geometry = new PlaneGeometry(x, y, Math.max(1, columns - 1), Math.max(1, rows - 1));
@@ -53,7 +58,7 @@ export function ground(heights: Float32Array, columns: number, size: readonly nu
   const uvs = geometry.getAttribute("uv");
   const [across, along] = tile > 0 ? [x / tile, y / tile] : [1, 1];
   for (let i = 0; i < positions.count; i++) {
-    // A plane begins with the greatest y.
+    // The vertices of a plane start at the greatest y.
     const row = rows - 1 - Math.floor(i / columns);
     positions.setZ(i, (heights[row * columns + (i % columns)] ?? 0) * z);
     uvs.setXY(i, uvs.getX(i) * across, uvs.getY(i) * along);

@@ -1,27 +1,27 @@
 import { Box3, Vector3 } from "three";
 import type { RobotScene } from "../../protocol";
 
-/** A part nearer to the plane than this share of the robot's size is on it. */
-const STANDS = 0.01;
+/** A part stands on a plane if it is closer to it than this share of the robot's size. */
+const STANDING_TOLERANCE = 0.01;
 
 /**
- * The height of a robot's ground in the fixed frame, m: its lowest point where that is below z = 0, as with wheels below
- * the frame that they turn about. A robot whose base is on z = 0 stays there whatever reaches below it, as an arm
- * may that is mounted on a table.
+ * Returns the height of a robot's ground in the fixed frame, m: its lowest point if that is below z = 0, as for wheels
+ * below the frame about which they turn. For a robot whose base stands on z = 0, that is the ground whatever reaches
+ * below it, as an arm mounted on a table may.
  *
- * @param robot its base are the links that no joint moves.
- * @param boxes around what is seen of each link, by its name.
+ * @param robot - its base consists of the links that no joint moves.
+ * @param boxes - the bounding boxes of the visible parts of each link, by its name.
  */
 export function groundOf(robot: Pick<RobotScene, "links" | "joints">, boxes: ReadonlyMap<string, Box3>): number {
-  const whole = around(boxes, [...boxes.keys()]);
+  const whole = union(boxes, [...boxes.keys()]);
   if (whole.isEmpty()) return 0;
-  const margin = STANDS * whole.getSize(new Vector3()).length();
-  const base = around(boxes, baseOf(robot));
+  const margin = STANDING_TOLERANCE * whole.getSize(new Vector3()).length();
+  const base = union(boxes, fixedLinks(robot));
   const stands = !base.isEmpty() && Math.abs(base.min.z) <= margin;
   return stands || whole.min.z >= -margin ? 0 : whole.min.z;
 }
 
-function around(boxes: ReadonlyMap<string, Box3>, links: Iterable<string>): Box3 {
+function union(boxes: ReadonlyMap<string, Box3>, links: Iterable<string>): Box3 {
   const box = new Box3();
   for (const link of links) {
     const each = boxes.get(link);
@@ -30,8 +30,8 @@ function around(boxes: ReadonlyMap<string, Box3>, links: Iterable<string>): Box3
   return box;
 }
 
-/** The links that are fixed to the root. */
-function baseOf({ links, joints }: Pick<RobotScene, "links" | "joints">): Set<string> {
+/** Returns the links that are fixed to the root. */
+function fixedLinks({ links, joints }: Pick<RobotScene, "links" | "joints">): Set<string> {
   const base = new Set(links.filter((link) => link.parent_joint === null).map((link) => link.name));
   const fixed = joints.filter((joint) => joint.kind === "fixed");
   for (let grown = true; grown; ) {

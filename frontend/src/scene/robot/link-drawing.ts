@@ -1,46 +1,46 @@
 import { Group, Matrix4, type Mesh, type Object3D } from "three";
 import type { LinkScene } from "../../protocol";
-import type { Instead } from "../../state/comparison";
+import type { LinkOverride } from "../../state/comparison";
 import type { MaterialPool } from "../materials";
 import type { StandIns } from "../meshes/stand-ins";
 import { LinkTrail } from "./link-trail";
 import type { MovingPiece } from "./moving-meshes";
-import { ShapeDrawing, type ShapePiece, type ShapeTold } from "./shape-drawing";
+import { ShapeDrawing, type ShapePiece, type InspectedShape } from "./shape-drawing";
 import type { SolidKind, Solids } from "./solids";
 
-/** The style of a link: the display's properties and the link's own, together. */
+/** The style of a link, from the display's properties and its own. */
 export interface LinkStyle {
   enabled: boolean;
   visual: boolean;
   collision: boolean;
-  /** Robot's times link's. */
+  /** The robot's alpha times the link's. */
   alpha: number;
   trail: boolean;
-  /** Collisions over pale visuals, whether the display draws them or not. */
+  /** Whether to draw collisions over pale visuals, even if the display does not show them. */
   contrast: boolean;
-  /** Takes the place of the colours of the description. */
-  instead: Instead | null;
+  /** Replaces the colours of the description. */
+  override: LinkOverride | null;
 }
 
-/** A part of a robot that is drawn elsewhere than its description has it. */
+/** Draws a part of a robot at another pose than that of its description. */
 export interface Displacement {
-  /** Changes where a link is in the fixed frame. */
+  /** Changes the pose of a link in the fixed frame. */
   readonly link?: (name: string, matrix: Matrix4) => void;
-  /** A shape of a link: of the shapes at `from` in it, the one after so many others. */
+  /** Moves a shape of a link: the one with index `among` among the shapes at `from` in the link. */
   readonly shape?: { readonly link: string; readonly kind: "visual" | "collision"; readonly among: number; readonly from: Matrix4; readonly to: Matrix4 };
 }
 
-/** In contrast: what is left of the visuals' alpha, and the collisions' colour and alpha. */
-const PALE = 0.3;
-const COLLISION: Instead = { color: [1, 0.55, 0.1] };
+/** In contrast mode: the factor for the visuals' alpha, and the colour and alpha of collisions. */
+const PALE_FACTOR = 0.3;
+const COLLISION: LinkOverride = { color: [1, 0.55, 0.1] };
 const COLLISION_ALPHA = 0.55;
 
 const scratch = new Matrix4();
 
-/** Writes where a link is in the fixed frame into `matrix`; false, and nothing written, where that is not known. */
-export type FindLink = (link: LinkScene, matrix: Matrix4) => boolean;
+/** Computes the pose of a link in the fixed frame; returns false, and leaves `matrix` unchanged, if it is unknown. */
+export type ReadLinkPose = (link: LinkScene, matrix: Matrix4) => boolean;
 
-/** One link: its visuals and collisions in the frame of its name. */
+/** The drawing of a link: its visuals and collisions, in the link's frame. */
 export class LinkDrawing {
   readonly root = new Group();
   readonly visuals: readonly ShapeDrawing[];
@@ -48,42 +48,42 @@ export class LinkDrawing {
   private readonly visualGroup = new Group();
   private readonly collisionGroup = new Group();
   private trail: LinkTrail | null = null;
-  private style: LinkStyle = { enabled: true, visual: true, collision: false, alpha: 1, trail: false, contrast: false, instead: null };
-  private posed = false;
-  private lost = false;
+  private style: LinkStyle = { enabled: true, visual: true, collision: false, alpha: 1, trail: false, contrast: false, override: null };
+  private hasPose = false;
+  private hasLostTransform = false;
 
   constructor(
     readonly link: LinkScene,
     private readonly pool: MaterialPool,
-    /** Where things in the fixed frame go, such as the trail. */
+    /** The parent of objects in the fixed frame, such as the trail. */
     private readonly world: Object3D,
   ) {
-    // RViz paints collisions with the material of the link's first visual.
+    // Like RViz, paint collisions with the material of the link's first visual.
     const color = link.visuals[0]?.color ?? null;
     this.visuals = link.visuals.map((shape) => new ShapeDrawing(shape));
     this.collisions = link.collisions.map((shape) => new ShapeDrawing({ ...shape, color: shape.color ?? color }));
-    for (const each of this.visuals) this.visualGroup.add(each.root);
-    for (const each of this.collisions) this.collisionGroup.add(each.root);
+    for (const visual of this.visuals) this.visualGroup.add(visual.root);
+    for (const collision of this.collisions) this.collisionGroup.add(collision.root);
     this.visualGroup.matrixAutoUpdate = this.collisionGroup.matrixAutoUpdate = false;
     this.root.matrixAutoUpdate = false;
     this.root.visible = false;
     this.root.add(this.visualGroup, this.collisionGroup);
   }
 
-  /** Whether it has visuals that are to be drawn. */
+  /** Whether the link has visuals that are enabled. */
   get showsVisuals(): boolean {
     return this.visuals.length > 0 && this.visualGroup.visible;
   }
 
-  /** Shapes drawn now. */
+  /** The number of visuals drawn now. */
   get visualsDrawn(): number {
     if (!this.root.visible || !this.visualGroup.visible) return 0;
-    return this.visuals.filter((each) => each.drawn).length;
+    return this.visuals.filter((visual) => visual.drawn).length;
   }
 
-  /** The pose at which it is drawn; null before it had a transform. */
+  /** The pose at which the link is drawn; null until it has a transform. */
   get pose(): Matrix4 | null {
-    return this.posed ? this.root.matrix : null;
+    return this.hasPose ? this.root.matrix : null;
   }
 
   /** The meshes of the parts that are visible now. */
@@ -91,19 +91,22 @@ export class LinkDrawing {
     return this.shown.flatMap((each) => each.meshes);
   }
 
-  /** Counts what `addSolids` adds. */
+  /** Counts the shapes that `addSolids` adds. */
   countSolids(counts: Map<SolidKind, number>): void {
     for (const { solid } of this.shown) if (solid) counts.set(solid.kind, (counts.get(solid.kind) ?? 0) + 1);
   }
 
-  /** Adds what is drawn together with the shapes of other links. */
+  /** Adds the shapes that are drawn in batches with those of other links. */
   addSolids(solids: Solids): void {
     for (const { solid } of this.shown) {
       if (solid) solids.add(solid.kind, scratch.multiplyMatrices(this.root.matrix, solid.matrix), solid.color);
     }
   }
 
-  /** Adds what is drawn together with meshes of other links while the robot moves, see `ShapeDrawing.addPieces`. */
+  /**
+   * Adds the meshes that are drawn together with those of other links while the robot moves, see
+   * `ShapeDrawing.addPieces`.
+   */
   addPieces(standIns: StandIns, meshes: Mesh[], pieces: MovingPiece[]): boolean {
     const own: ShapePiece[] = [];
     const found = this.shown.map((shape) => shape.addPieces(standIns, meshes, own));
@@ -122,45 +125,45 @@ export class LinkDrawing {
   }
 
   paint(): void {
-    const { contrast, instead } = this.style;
-    const alpha = instead?.firm === true ? Math.sqrt(this.style.alpha) : this.style.alpha;
-    for (const each of this.visuals) each.paint(this.pool, contrast ? alpha * PALE : alpha, this.lost, instead);
-    for (const each of this.collisions) {
-      if (contrast) each.paint(this.pool, alpha * COLLISION_ALPHA, this.lost, COLLISION);
-      else each.paint(this.pool, alpha, this.lost, instead);
+    const { contrast, override } = this.style;
+    const alpha = override?.firm === true ? Math.sqrt(this.style.alpha) : this.style.alpha;
+    for (const visual of this.visuals) visual.paint(this.pool, contrast ? alpha * PALE_FACTOR : alpha, this.hasLostTransform, override);
+    for (const collision of this.collisions) {
+      if (contrast) collision.paint(this.pool, alpha * COLLISION_ALPHA, this.hasLostTransform, COLLISION);
+      else collision.paint(this.pool, alpha, this.hasLostTransform, override);
     }
   }
 
-  /** Moves to where it is. Without a transform RViz leaves a link where it was, in white. */
-  place(find: FindLink, isCovered: boolean): void {
+  /** Moves the link to its pose. Like RViz, leaves a link without a transform in place, in white. */
+  place(find: ReadLinkPose, isCovered: boolean): void {
     const found = find(this.link, this.root.matrix);
-    this.posed ||= found;
-    this.root.visible = this.posed && !isCovered;
+    this.hasPose ||= found;
+    this.root.visible = this.hasPose && !isCovered;
     this.root.matrixWorldNeedsUpdate = true;
     if (found) this.trail?.follow(this.root.matrix);
-    if (this.posed && found === this.lost) {
-      this.lost = !found;
+    if (this.hasPose && found === this.hasLostTransform) {
+      this.hasLostTransform = !found;
       this.paint();
     }
   }
 
-  /** Draws one of its shapes elsewhere; null for none. */
+  /** Draws one of its shapes at another pose; null restores all. */
   displaceShape(displaced: Displacement["shape"] | null): void {
     for (const each of [...this.visuals, ...this.collisions]) each.displace(null);
     const { style } = this;
-    // A collision that is moved is seen, whether the others are or not.
+    // Show a collision that is being moved even if collisions are hidden.
     this.collisionGroup.visible = (style.collision || style.contrast || displaced?.kind === "collision") && style.enabled;
     if (!displaced) return;
     const shapes = displaced.kind === "visual" ? this.visuals : this.collisions;
-    shapes.filter((each) => each.isAt(displaced.from))[displaced.among]?.displace(displaced.to);
+    shapes.filter((shape) => shape.isAt(displaced.from))[displaced.among]?.displace(displaced.to);
   }
 
-  /** What is drawn, for tests. */
-  tell(): { visuals: ShapeTold[]; collisions: ShapeTold[]; trail: boolean } {
+  /** Returns what is drawn, for tests. */
+  inspect(): { visuals: InspectedShape[]; collisions: InspectedShape[]; trail: boolean } {
     const { visible } = this.root;
     return {
-      visuals: visible && this.visualGroup.visible ? this.visuals.map((each) => each.tell()) : [],
-      collisions: visible && this.collisionGroup.visible ? this.collisions.map((each) => each.tell()) : [],
+      visuals: visible && this.visualGroup.visible ? this.visuals.map((visual) => visual.inspect()) : [],
+      collisions: visible && this.collisionGroup.visible ? this.collisions.map((collision) => collision.inspect()) : [],
       trail: this.trail !== null,
     };
   }

@@ -6,10 +6,10 @@ const ELEMENTS = 100;
 const WIDTH = 0.01;
 const COLOR = 0x008080;
 
-/** The ribbon behind a link: its last 2 m in 100 elements. */
+/** The ribbon behind a link: the last 2 m of its path in 100 points. */
 export class LinkTrail {
   private readonly ribbon = new WideLines();
-  /** Newest first; the first one moves with the link. */
+  /** The points, newest first; the first one moves with the link. */
   private points: Vector3[] = [];
 
   constructor(world: Object3D) {

@@ -11,21 +11,21 @@ import {
   type DataTexture,
   type Object3D,
 } from "three";
-import { TOUCHED } from "../layers";
+import { PICKABLE } from "../layers";
 import type { StandIn } from "../meshes/stand-in";
 import { litSlotMaterial, slotTexture, writeSlot } from "../objects/slot-material";
 
-/** The size of a difference that no user sees in a moving image, in its pixels. */
-const UNSEEN = 1;
+/** The largest error that is not noticed in a moving frame, in its pixels. */
+const MAX_ERROR_PX = 1;
 
-/** The moving image for which stand-ins are drawn. */
+/** The moving frame for which stand-ins are drawn. */
 export interface MovingView {
   readonly camera: Camera;
-  /** Its own pixels, which may be larger than those of the screen. */
+  /** The height in pixels of the frame, which may be larger than those of the screen. */
   readonly height: number;
 }
 
-/** A piece of a mesh with the colour 0xrrggbb, where it is. */
+/** A piece of a mesh with its matrix and its colour 0xrrggbb. */
 export interface MovingPiece {
   readonly standIn: StandIn;
   readonly matrix: Matrix4;
@@ -33,14 +33,16 @@ export interface MovingPiece {
 }
 
 /**
- * Draws the meshes of a robot that moves all in one draw call, each in as few triangles as look the same. Software
- * renderers take some 0.3 microseconds for each triangle, and 100 for each draw call.
+ * Draws all meshes of a moving robot in one draw call, each with as few triangles as look the same. Software renderers
+ * take some 0.3 microseconds for each triangle, and 100 for each draw call.
  */
 export class MovingMeshes {
   private mesh: Mesh<BufferGeometry, ReturnType<typeof litSlotMaterial>> | null = null;
   private readonly slots: { value: DataTexture } = { value: slotTexture(0) };
-  /** What is in the buffers: the pieces' stand-ins, the number of the first vertex of each, and the levels drawn. */
-  private held: readonly StandIn[] = [];
+  /**
+   * The contents of the buffers: the pieces' stand-ins, the index of the first vertex of each, and the levels drawn.
+   */
+  private buffered: readonly StandIn[] = [];
   private firsts: number[] = [];
   private levels: readonly (number | null)[] = [];
   private hidden: Mesh[] = [];
@@ -48,26 +50,26 @@ export class MovingMeshes {
 
   constructor(private readonly parent: Object3D) {}
 
-  /** Whether they are lit softly, and not as RViz does. */
+  /** Whether the meshes have the soft light instead of RViz's. */
   set isSoft(isSoft: boolean) {
     this.softness.value = isSoft;
   }
 
-  /** Pieces and triangles drawn last. */
+  /** The number of pieces and triangles drawn last. */
   get drawn(): { pieces: number; triangles: number } {
     const pieces = this.levels.filter((level) => level !== null).length;
     return { pieces, triangles: (this.mesh?.geometry.drawRange.count ?? 0) / 3 };
   }
 
-  /** Draws pieces in place of meshes, until `end`. */
+  /** Draws pieces instead of meshes, until `end`. */
   begin(pieces: readonly MovingPiece[], meshes: readonly Mesh[], view: MovingView): void {
-    const mesh = this.hold(pieces);
+    const mesh = this.fillBuffers(pieces);
     pieces.forEach(({ matrix, color }, slot) => writeSlot(this.texels, slot, matrix, color));
     this.slots.value.needsUpdate = true;
     this.arrange(mesh.geometry, pieces, view);
     for (const each of meshes) {
       each.layers.disable(0);
-      each.layers.enable(TOUCHED);
+      each.layers.enable(PICKABLE);
     }
     this.hidden = [...meshes];
     this.parent.add(mesh);
@@ -90,26 +92,26 @@ export class MovingMeshes {
     return this.slots.value.image.data as Float32Array;
   }
 
-  /** Has the vertices of all pieces in one buffer; each knows its piece by a number. */
-  private hold(pieces: readonly MovingPiece[]): NonNullable<MovingMeshes["mesh"]> {
-    const { held } = this;
-    if (this.mesh && held.length === pieces.length && pieces.every(({ standIn }, i) => standIn === held[i])) return this.mesh;
-    this.held = pieces.map(({ standIn }) => standIn);
+  /** Fills one buffer with the vertices of all pieces; each vertex has the index of its piece. */
+  private fillBuffers(pieces: readonly MovingPiece[]): NonNullable<MovingMeshes["mesh"]> {
+    const { buffered } = this;
+    if (this.mesh && buffered.length === pieces.length && pieces.every(({ standIn }, i) => standIn === buffered[i])) return this.mesh;
+    this.buffered = pieces.map(({ standIn }) => standIn);
     this.firsts = [];
     this.levels = [];
     let vertices = 0;
-    for (const { positions } of this.held) {
+    for (const { positions } of this.buffered) {
       this.firsts.push(vertices);
       vertices += positions.length / 3;
     }
     const [places, normals, slot] = [new Float32Array(3 * vertices), new Float32Array(3 * vertices), new Float32Array(vertices)];
-    this.held.forEach((each, i) => {
+    this.buffered.forEach((each, i) => {
       const first = this.firsts[i] ?? 0;
       places.set(each.positions, 3 * first);
       normals.set(each.normals, 3 * first);
       slot.fill(i, first, first + each.positions.length / 3);
     });
-    const most = this.held.reduce((sum, { levels }) => sum + (levels[0]?.index.length ?? 0), 0);
+    const most = this.buffered.reduce((sum, { levels }) => sum + (levels[0]?.index.length ?? 0), 0);
     const geometry = new BufferGeometry()
       .setAttribute("position", new BufferAttribute(places, 3))
       .setAttribute("normal", new BufferAttribute(normals, 3))
@@ -124,7 +126,7 @@ export class MovingMeshes {
     return this.mesh;
   }
 
-  /** Puts into the index what the camera sees, each piece as coarse as is not seen. */
+  /** Fills the index with the visible pieces, each at the coarsest level whose error is not noticed. */
   private arrange(geometry: BufferGeometry, pieces: readonly MovingPiece[], view: MovingView): void {
     const levels = levelsFor(pieces, view);
     if (levels.length === this.levels.length && levels.every((level, i) => level === this.levels[i])) return;
@@ -133,9 +135,9 @@ export class MovingMeshes {
     if (!index) return;
     let count = 0;
     pieces.forEach(({ standIn }, i) => {
-      const wanted = standIn.levels[levels[i] ?? -1]?.index ?? [];
+      const indices = standIn.levels[levels[i] ?? -1]?.index ?? [];
       const first = this.firsts[i] ?? 0;
-      for (const vertex of wanted) index.array[count++] = first + vertex;
+      for (const vertex of indices) index.array[count++] = first + vertex;
     });
     geometry.setDrawRange(0, count);
     index.clearUpdateRanges();
@@ -144,20 +146,22 @@ export class MovingMeshes {
   }
 }
 
-/** The number of the coarsest level of each piece that looks as the finest does; null for what the camera does not see. */
+/**
+ * Returns for each piece the index of the coarsest level that looks like the finest; null for pieces outside the view.
+ */
 export function levelsFor(pieces: readonly MovingPiece[], { camera, height }: MovingView): (number | null)[] {
   const { elements } = camera.projectionMatrix;
   const isPerspective = elements[11] !== 0;
   const frustum = new Frustum().setFromProjectionMatrix(camera.projectionMatrix);
   const [view, middle, ball] = [new Matrix4(), new Vector3(), new Sphere()];
-  return pieces.map(({ standIn: { ball: [x, y, z, radius], levels }, matrix }) => {
+  return pieces.map(({ standIn: { sphere: [x, y, z, radius], levels }, matrix }) => {
     const scale = matrix.getMaxScaleOnAxis();
     view.multiplyMatrices(camera.matrixWorldInverse, matrix);
     ball.set(middle.set(x, y, z).applyMatrix4(view), radius * scale);
     if (!frustum.intersectsSphere(ball)) return null;
     const depth = isPerspective ? -middle.z - ball.radius : 1;
     // m of the piece in a pixel, where it is nearest
-    const unseen = depth <= 0 ? 0 : (UNSEEN * depth) / (elements[5] * 0.5 * height * scale);
+    const unseen = depth <= 0 ? 0 : (MAX_ERROR_PX * depth) / (elements[5] * 0.5 * height * scale);
     return levels.findLastIndex(({ error }) => error <= unseen);
   });
 }

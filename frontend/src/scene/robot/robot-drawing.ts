@@ -1,31 +1,31 @@
 import { Box3, Group, Vector3, type Camera, type Matrix4, type Mesh, type Object3D, type Raycaster } from "three";
 import type { LinkScene, RobotScene } from "../../protocol";
-import type { Instead } from "../../state/comparison";
+import type { LinkOverride } from "../../state/comparison";
 import type { PropertyRows } from "../../state/properties";
-import type { Described, Hit, SelectionBox } from "../picking";
+import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import { describedPose } from "../described-pose";
 import type { Lighting } from "../light";
 import { MaterialPool } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { MovingMeshes, type MovingView, type MovingPiece } from "./moving-meshes";
 import { groundOf } from "./ground";
-import { LinkDrawing, type Displacement, type FindLink } from "./link-drawing";
+import { LinkDrawing, type Displacement, type ReadLinkPose } from "./link-drawing";
 import { RobotExtras } from "./robot-extras";
 import type { ShapeDrawing } from "./shape-drawing";
 import { Solids, type SolidKind } from "./solids";
 
-/** Told once for each mesh of each link: `error` is null when all of it is drawn. */
+/** Called once for each mesh of each link; `error` is null if all of it is drawn. */
 export type MeshReport = (link: string, url: string, error: string | null) => void;
 
-type InsteadOf = (link: string) => Instead | null;
+type OverrideOf = (link: string) => LinkOverride | null;
 
-/** What is drawn: of a robot, or of all models of a world. */
+/** The links and joints of a robot, or of all models of a world. */
 type DrawnLinks = Pick<RobotScene, "links" | "joints">;
 
-/** One description of a robot, as links. */
+/** The drawing of a robot description, link by link. */
 export class RobotDrawing {
   readonly root = new Group();
-  /** Done when every mesh and texture is there or has failed. */
+  /** Resolved once every mesh and texture has loaded or failed. */
   readonly settled: Promise<void>;
   private readonly pool = new MaterialPool();
   private readonly links: ReadonlyMap<string, LinkDrawing>;
@@ -63,7 +63,7 @@ export class RobotDrawing {
     return count;
   }
 
-  get isInPlace(): boolean {
+  get hasPose(): boolean {
     const links = [...this.links.values()];
     const seen = links.filter((link) => link.showsVisuals);
     return (seen.length > 0 ? seen : links).some((link) => link.pose !== null);
@@ -73,21 +73,25 @@ export class RobotDrawing {
     return this.links.size;
   }
 
-  /** The number of links that have a pose, and of meshes and textures that are still being loaded. */
+  /** The number of links with a pose, and of meshes and textures still loading. */
   get progress(): { posed: number; loading: number } {
     return { posed: [...this.links.values()].filter((link) => link.pose !== null).length, loading: this.loading };
   }
 
-  /** The box around what is seen, in the fixed frame, m; around the links' origins where nothing is. */
+  /**
+   * Returns the bounding box of the visible parts in the fixed frame, m; of the links' origins if nothing is visible.
+   */
   bounds(): Box3 {
     const box = new Box3();
-    for (const each of this.boundsOfLinks().values()) box.union(each);
+    for (const bounds of this.boundsOfLinks().values()) box.union(bounds);
     if (!box.isEmpty()) return box;
     for (const { pose } of this.links.values()) if (pose) box.expandByPoint(new Vector3().setFromMatrixPosition(pose));
     return box;
   }
 
-  /** A box around all visible parts, maybe larger than they are; it does not check single points. */
+  /**
+   * Returns a box that contains all visible parts but may be larger, because it is computed without single vertices.
+   */
   roughBounds(): Box3 {
     const box = new Box3();
     this.root.updateWorldMatrix(true, true);
@@ -100,12 +104,14 @@ export class RobotDrawing {
     return [...this.links.values()].flatMap((link) => link.visibleMeshes);
   }
 
-  /** The height of the ground under it, in the fixed frame, m. */
+  /** Returns the height of the ground below the robot in the fixed frame, m. */
   ground(): number {
     return groundOf(this.scene, this.boundsOfLinks());
   }
 
-  /** The boxes around what is seen of each link, in the fixed frame, m; empty ones where nothing is. */
+  /**
+   * Returns the bounding boxes of the visible parts of each link in the fixed frame, m; empty for links without any.
+   */
   boundsOfLinks(): Map<string, Box3> {
     this.root.updateWorldMatrix(true, true);
     const boxes = new Map<string, Box3>();
@@ -118,17 +124,18 @@ export class RobotDrawing {
   }
 
   /**
-   * `contrast` draws collisions over pale visuals; `instead`: what a link has in place of its own colours.
+   * Applies the display's properties. `contrast` draws collisions over pale visuals; `overrideOf` returns the colours that
+   * replace those of a link.
    */
-  style(rows: PropertyRows, contrast: boolean, lighting: Lighting = "Camera", instead: InsteadOf = () => null): void {
+  style(rows: PropertyRows, contrast: boolean, lighting: Lighting = "Camera", overrideOf: OverrideOf = () => null): void {
     this.pool.lighting = lighting;
     this.solids.isSoft = this.moving.isSoft = lighting === "Soft";
-    this.pool.renew(() => this.styleLinks(rows, contrast, instead));
+    this.pool.repaint(() => this.styleLinks(rows, contrast, overrideOf));
     this.extras.style(rows);
   }
 
-  /** `isCovered`: whether another drawing shows a link already. */
-  place(find: FindLink, isCovered: (link: LinkScene) => boolean = () => false): void {
+  /** Moves all links to their poses; `isCovered` returns whether another drawing shows a link already. */
+  place(find: ReadLinkPose, isCovered: (link: LinkScene) => boolean = () => false): void {
     const counts = new Map<SolidKind, number>();
     for (const link of this.links.values()) {
       link.place(find, isCovered(link.link));
@@ -144,13 +151,13 @@ export class RobotDrawing {
     for (const link of this.links.values()) link.displaceShape(displaced?.link === link.link.name ? displaced : null);
   }
 
-  /** Chooses how finely shapes are drawn, for the camera of the next frame. */
-  look(camera: Camera): void {
-    this.solids.look(camera);
+  /** Chooses the detail of shapes for the camera of the next frame. */
+  chooseDetail(camera: Camera): void {
+    this.solids.chooseDetail(camera);
   }
 
-  /** Draws meshes for an image of a moving robot by fewer triangles, as far as no user sees it; null: as they are. */
-  move(view: MovingView | null): void {
+  /** Draws the meshes of a moving robot with fewer triangles, as far as that is not noticed; null restores them. */
+  simplify(view: MovingView | null): void {
     this.moving.end();
     const { standIns } = this.meshes;
     if (!view || !standIns || this.pool.isLit) return;
@@ -176,26 +183,26 @@ export class RobotDrawing {
     return inside.map((link) => link.link.name);
   }
 
-  /** A link as RViz's Selection panel shows it. */
-  describe(name: string): Described | null {
+  /** Returns a link as RViz's Selection panel shows it. */
+  describe(name: string): DescriptionRow | null {
     const link = this.links.get(name);
     return link ? { name: `Link ${name}`, children: describedPose(link.root.matrix) } : null;
   }
 
-  /** The pose of a link; null before that is known. */
+  /** Returns the pose of a link; null until it is known. */
   poseOf(name: string): Matrix4 | null {
     return this.links.get(name)?.pose ?? null;
   }
 
-  /** The origin of a link; null before that is known. */
+  /** Returns the origin of a link; null until it is known. */
   placeOf(name: string): Vector3 | null {
     const pose = this.poseOf(name);
     return pose ? new Vector3().setFromMatrixPosition(pose) : null;
   }
 
-  /** What is drawn, for tests: the shapes of each link, and the other drawings beside them. */
-  tell(): object {
-    const links = [...this.links.values()].map((link) => [link.link.name, link.tell()] as const);
+  /** Returns what is drawn, for tests: the shapes of each link, and the counts of other marks. */
+  inspect(): object {
+    const links = [...this.links.values()].map((link) => [link.link.name, link.inspect()] as const);
     const { size: drawnTogether, smallSpheres } = this.solids;
     return { ...this.extras.counts, drawnTogether, smallSpheres, moving: this.moving.drawn, links: Object.fromEntries(links) };
   }
@@ -213,7 +220,7 @@ export class RobotDrawing {
     this.pool.dispose();
   }
 
-  private styleLinks(rows: PropertyRows, contrast: boolean, instead: InsteadOf): void {
+  private styleLinks(rows: PropertyRows, contrast: boolean, overrideOf: OverrideOf): void {
     const own = new Map(rows.find("Links")?.children.map((row) => [row.name, row]));
     const alpha = rows.number(1, "Alpha");
     const visual = rows.bool(true, "Visual Enabled");
@@ -229,7 +236,7 @@ export class RobotDrawing {
         alpha: alpha * (typeof linkAlpha === "number" ? linkAlpha : 1),
         trail: child("Show Trail") === true,
         contrast,
-        instead: instead(name),
+        override: overrideOf(name),
       });
     }
   }

@@ -4,21 +4,21 @@ import type { PropertyNode, PropertyRows } from "../../state/properties";
 import { alongX, ArrowBatch } from "../objects/arrow-batch";
 import { AxesBatch } from "../objects/axes-batch";
 import { CopyBatch } from "../objects/copy-batch";
-import { ballGeometry, cubeGeometry } from "../objects/geometries";
+import { sphereGeometry, cubeGeometry } from "../objects/geometries";
 
 const AXES_LENGTH = 0.1;
 const AXES_RADIUS = 0.01;
 const AXIS = { shaftLength: 0.15, shaftDiameter: 0.05, headLength: 0.05, headDiameter: 0.08 };
 const AXIS_COLOR = 0x00cc00;
 const MASS_COLOR = 0xff0000;
-/** Of lead, kg/m3: what RViz's balls of a link's mass are made of. */
+/** The density of lead, kg/m3, from which RViz computes the spheres for a link's mass. */
 const DENSITY = 11340;
 const ONE = new Vector3(1, 1, 1);
 
-/** The pose at which a link is drawn; null before it had a transform. */
+/** Returns the pose at which a link is drawn; null until it has a transform. */
 export type LinkPose = (link: string) => Matrix4 | null;
 
-/** The parts of a robot that RViz draws beside its shapes: axes of links and joints, joint axes, masses and inertias. */
+/** What RViz draws in addition to a robot's shapes: axes of links and joints, joint axes, masses and inertias. */
 export class RobotExtras {
   private readonly axes: AxesBatch;
   private readonly arrows: ArrowBatch;
@@ -37,12 +37,12 @@ export class RobotExtras {
   ) {
     this.axes = new AxesBatch(parent, AXES_LENGTH, AXES_RADIUS);
     this.arrows = new ArrowBatch(parent);
-    this.balls = new CopyBatch(parent, ballGeometry(20));
+    this.balls = new CopyBatch(parent, sphereGeometry(20));
     this.boxes = new CopyBatch(parent, cubeGeometry());
     this.joints = scene.joints.map((joint) => ({ joint, origin: jointOrigin(joint) }));
   }
 
-  /** The number of each that is drawn. */
+  /** The number of marks of each kind drawn now. */
   get counts(): { axes: number; jointAxes: number; masses: number; inertias: number } {
     return {
       axes: this.axes.size,
@@ -52,7 +52,7 @@ export class RobotExtras {
     };
   }
 
-  /** Reads what is to be drawn. */
+  /** Reads from the properties what is to be drawn. */
   style(rows: PropertyRows): void {
     const links = new Map(rows.find("Links")?.children.map((row) => [row.name, row]));
     const shown = this.scene.links.filter((link) => links.get(link.name)?.value !== false);
@@ -121,7 +121,7 @@ export class RobotExtras {
   }
 }
 
-/** A joint's frame in that of its parent link, at position zero. */
+/** Returns a joint's frame in the frame of its parent link, at position zero. */
 function jointOrigin({ position, quaternion }: JointScene): Matrix4 {
   return new Matrix4().compose(new Vector3().fromArray(position), new Quaternion().fromArray(quaternion), ONE);
 }

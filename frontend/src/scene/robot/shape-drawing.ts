@@ -1,66 +1,66 @@
 import { Box3, Color, DoubleSide, Group, Matrix4, Mesh, MeshLambertMaterial, type BufferGeometry, type Material, type Texture } from "three";
 import type { Shape } from "../../protocol";
-import type { Instead } from "../../state/comparison";
+import type { LinkOverride } from "../../state/comparison";
 import { strings } from "../../strings";
-import { TOUCHED } from "../layers";
+import { PICKABLE } from "../layers";
 import { errorMaterial, OPAQUE_FROM, RVIZ_RED, type Look, type MaterialPool, type Surface } from "../materials";
 import { quoted } from "../meshes/mesh-error";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import type { StandIn } from "../meshes/stand-in";
 import type { StandIns } from "../meshes/stand-ins";
 import { UNCOLOURED_GREY, type MeshTemplate, type OwnMaterial } from "../meshes/mesh-template";
-import { extrusion, ground, submesh } from "../objects/world-geometries";
+import { extrudedPolygons, heightmapGeometry, submesh } from "../objects/world-geometries";
 import { poseMatrix } from "../pose";
-import { capsule, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
+import { capsuleGeometry, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
 import { solidKind, type SolidKind } from "./solids";
 
-/** m, and parts of rotation matrices. */
-const SAME_PLACE = 1e-6;
+/** The tolerance for equal poses: m, and elements of rotation matrices. */
+const POSE_TOLERANCE = 1e-6;
 
-/** A part of a shape: what is drawn, and with which materials of the file's own. */
+/** A part of a shape: its mesh, and the materials from the file. */
 interface Part {
   mesh: Mesh;
   own: readonly (OwnMaterial | null)[];
 }
 
-/** A shape that is drawn in a batch of its kind, and not by a mesh of its own. */
+/** A shape that is drawn in a batch instead of as a mesh of its own. */
 export interface Solid {
   readonly kind: SolidKind;
-  /** From the shape of size one to the link. */
+  /** The matrix from the unit shape to the link. */
   readonly matrix: Matrix4;
-  /** 0xrrggbb */
+  /** The colour, 0xrrggbb. */
   readonly color: number;
 }
 
 /** A piece of a shape that may be drawn together with others while the robot moves. */
 export interface ShapePiece {
   readonly standIn: StandIn;
-  /** From the mesh to the link. */
+  /** The matrix from the mesh to the link. */
   readonly matrix: Matrix4;
-  /** 0xrrggbb */
+  /** The colour, 0xrrggbb. */
   readonly color: number;
 }
 
-/** See `ShapeDrawing.tell`. */
-export interface ShapeTold {
+/** The result of `ShapeDrawing.inspect`. */
+export interface InspectedShape {
   kind: string;
   bounds: { min: number[]; max: number[] } | null;
   materials: { color: string; opacity: number; textured: boolean; reflects?: true }[];
 }
 
-/** One visual or collision of a link. */
+/** The drawing of one visual or collision of a link. */
 export class ShapeDrawing {
   readonly root = new Group();
   private parts: Part[] = [];
   private texture: Texture | null = null;
   private surface: Surface | null = null;
   private library: MeshLibrary | null = null;
-  /** The addresses of the library's textures that it has. */
-  private readonly worn: string[] = [];
-  /** Its own, which it must free. */
-  private made: BufferGeometry | null = null;
+  /** The addresses of the library's textures that this shape uses. */
+  private readonly usedTextures: string[] = [];
+  /** A geometry of its own, which it must dispose of. */
+  private ownGeometry: BufferGeometry | null = null;
   private problem: string | null = null;
-  private together: Solid | null = null;
+  private batched: Solid | null = null;
 
   constructor(readonly shape: Shape) {
     const [x = 0, y = 0, z = 0] = shape.position;
@@ -72,14 +72,14 @@ export class ShapeDrawing {
     this.root.matrixAutoUpdate = false;
   }
 
-  /** False for a mesh that is not there (yet). */
+  /** Whether the shape is drawn; false for a mesh that is not loaded. */
   get drawn(): boolean {
     return this.parts.length > 0;
   }
 
-  /** Its entry in a batch; its mesh then serves rays and outlines only. */
+  /** Its entry in a batch, if any; its mesh then serves rays and outlines only. */
   get solid(): Solid | null {
-    return this.together;
+    return this.batched;
   }
 
   get meshes(): readonly Mesh[] {
@@ -87,32 +87,32 @@ export class ShapeDrawing {
   }
 
   /**
-   * Fetches what the shape needs: its mesh, its texture.
+   * Loads the shape's mesh and textures.
    *
    * @returns what is missing although the shape is drawn, or null.
-   * @throws Error when the mesh cannot be drawn.
+   * @throws Error if the mesh cannot be drawn.
    */
   async load(library: MeshLibrary): Promise<string | null> {
     const { kind, url, format, texture, surface } = this.shape;
     if (kind === "mesh" && url !== null) this.buildMesh(await library.load(url, format ?? ""));
     this.library = library;
     const problems = this.problem === null ? [] : [this.problem];
-    const wear = async (address: string | null): Promise<Texture | null> => {
+    const loadTextureAt = async (address: string | null): Promise<Texture | null> => {
       if (address === null || this.library === null) return null;
       const url = library.files.address(address);
-      this.worn.push(url);
+      this.usedTextures.push(url);
       try {
-        return await library.textures.take(url);
+        return await library.textures.acquire(url);
       } catch {
         problems.push(strings.meshes.missingTextures(quoted([decodeURIComponent(address.split("/").pop() ?? address)])));
         return null;
       }
     };
-    this.texture = await wear(texture);
+    this.texture = await loadTextureAt(texture);
     if (surface) {
       const { roughness, metalness, normal_map, roughness_map, metalness_map, emissive_map, occlusion_map } = surface;
       const maps = [normal_map, roughness_map, metalness_map, emissive_map, occlusion_map] as const;
-      const [normalMap = null, roughnessMap = null, metalnessMap = null, emissiveMap = null, aoMap = null] = await Promise.all(maps.map(wear));
+      const [normalMap = null, roughnessMap = null, metalnessMap = null, emissiveMap = null, aoMap = null] = await Promise.all(maps.map(loadTextureAt));
       const emissive = emissiveMap ? ([1, 1, 1] as const) : ([0, 0, 0] as const);
       this.surface = { roughness, metalness, normalMap, roughnessMap, metalnessMap, emissive, emissiveMap, aoMap };
     }
@@ -120,29 +120,30 @@ export class ShapeDrawing {
   }
 
   /**
-   * Paints with the robot's and the link's alpha multiplied in; `lost` is RViz's white of links without transform.
+   * Applies materials; `alpha` includes that of the robot and the link, and `isLost` means RViz's white of links without
+   * a transform.
    *
-   * @param instead takes the place of all colours and textures.
+   * @param override - replaces all colours and textures.
    */
-  paint(pool: MaterialPool, alpha: number, lost: boolean, instead: Instead | null = null): void {
+  paint(pool: MaterialPool, alpha: number, isLost: boolean, override: LinkOverride | null = null): void {
     for (const { mesh, own } of this.parts) {
-      const materials = own.map((each) => (lost ? errorMaterial : pool.get(this.look(each, alpha, instead))));
+      const materials = own.map((each) => (isLost ? errorMaterial : pool.get(this.look(each, alpha, override))));
       const [only = errorMaterial] = materials;
       mesh.material = materials.length === 1 ? only : materials;
     }
-    this.together = lost || pool.isLit ? null : this.asSolid(instead, alpha);
+    this.batched = isLost || pool.isLit ? null : this.asSolid(override, alpha);
     for (const { mesh } of this.parts) {
-      if (this.together) {
+      if (this.batched) {
         mesh.layers.disable(0);
-        mesh.layers.enable(TOUCHED);
+        mesh.layers.enable(PICKABLE);
       } else mesh.layers.enable(0);
     }
   }
 
   /**
-   * Adds the meshes whose shapes stand-ins have, and the pieces of these.
+   * Adds the meshes that stand-ins can replace, and the pieces of these stand-ins.
    *
-   * @returns whether all expected stand-ins are complete.
+   * @returns whether all requested stand-ins are available.
    */
   addPieces(standIns: StandIns, meshes: Mesh[], pieces: ShapePiece[]): boolean {
     let complete = true;
@@ -164,25 +165,25 @@ export class ShapeDrawing {
     return complete;
   }
 
-  /** Whether the description has it at a pose of its link. */
+  /** Whether the description places the shape at a pose in its link. */
   isAt(pose: Matrix4): boolean {
     const [x = 0, y = 0, z = 0] = this.shape.position;
     const place = poseMatrix([x, y, z, ...this.shape.quaternion], new Matrix4());
-    return place.elements.every((value, i) => Math.abs(value - (pose.elements[i] ?? NaN)) < SAME_PLACE);
+    return place.elements.every((value, i) => Math.abs(value - (pose.elements[i] ?? NaN)) < POSE_TOLERANCE);
   }
 
-  /** Is drawn at another pose of its link; null for that of the description. */
+  /** Draws the shape at another pose in its link; null restores that of the description. */
   displace(pose: Matrix4 | null): void {
     if (pose) this.root.matrix.copy(pose);
     else this.root.updateMatrix();
     this.root.matrixWorldNeedsUpdate = true;
     const [part] = this.parts;
-    if (!this.together || !part) return;
-    this.together = { ...this.together, matrix: new Matrix4().multiplyMatrices(this.root.matrix, part.mesh.matrix) };
+    if (!this.batched || !part) return;
+    this.batched = { ...this.batched, matrix: new Matrix4().multiplyMatrices(this.root.matrix, part.mesh.matrix) };
   }
 
-  /** What is drawn, for tests: bounds in the fixed frame, and colour, opacity and texture of each material. */
-  tell(): ShapeTold {
+  /** Returns what is drawn, for tests: bounds in the fixed frame, and colour, opacity and texture of each material. */
+  inspect(): InspectedShape {
     const box = new Box3();
     for (const { mesh } of this.parts) {
       mesh.updateWorldMatrix(true, false);
@@ -202,9 +203,9 @@ export class ShapeDrawing {
   }
 
   dispose(): void {
-    for (const url of this.worn) this.library?.textures.giveBack(url);
+    for (const url of this.usedTextures) this.library?.textures.release(url);
     this.library = null;
-    this.made?.dispose();
+    this.ownGeometry?.dispose();
   }
 
   private buildPrimitive(): void {
@@ -217,7 +218,7 @@ export class ShapeDrawing {
         this.addPart(unitCylinder, [null]).scale.set(a, a, b);
         break;
       case "capsule":
-        this.addPart(capsule(a > 0 ? b / a : 0), [null]).scale.setScalar(a);
+        this.addPart(capsuleGeometry(a > 0 ? b / a : 0), [null]).scale.setScalar(a);
         break;
       case "sphere":
         this.addPart(unitSphere, [null]).scale.setScalar(a);
@@ -232,10 +233,10 @@ export class ShapeDrawing {
         this.addPart(unitPlane, [null]).scale.set(a, b, 1);
         break;
       case "polyline":
-        this.buildPart(extrusion(this.shape.outlines, a));
+        this.buildPart(extrudedPolygons(this.shape.outlines, a));
         break;
       case "heightmap":
-        if (this.shape.heights) this.buildPart(ground(this.shape.heights, this.shape.columns, this.shape.size));
+        if (this.shape.heights) this.buildPart(heightmapGeometry(this.shape.heights, this.shape.columns, this.shape.size));
         break;
       case "mesh":
         break;
@@ -243,10 +244,10 @@ export class ShapeDrawing {
     this.freeze();
   }
 
-  /** A part that no other shape shares. */
+  /** Builds a part with a geometry that no other shape shares. */
   private buildPart(geometry: BufferGeometry): void {
     this.addPart(geometry, [null]);
-    this.made = geometry;
+    this.ownGeometry = geometry;
     this.freeze();
   }
 
@@ -269,10 +270,10 @@ export class ShapeDrawing {
     return mesh;
   }
 
-  private asSolid(instead: Instead | null, alpha: number): Solid | null {
+  private asSolid(override: LinkOverride | null, alpha: number): Solid | null {
     const kind = solidKind(this.shape.kind);
     const [part] = this.parts;
-    const look = this.look(null, alpha, instead);
+    const look = this.look(null, alpha, override);
     if (kind === null || !part || look.map || look.alpha < OPAQUE_FROM) return null;
     return {
       kind,
@@ -289,12 +290,12 @@ export class ShapeDrawing {
   }
 
   /**
-   * RViz's rule: a part with a material of its own keeps it; any other takes the URDF's. Without one, a shape or STL is
-   * RViz's red and another mesh the grey that RViz's mesh reader puts in. How opaque a part is says the URDF alone:
-   * RViz does not read it from mesh files, where exporters often write it wrongly.
+   * Returns a look by RViz's rule: a part with a material of its own keeps it, and any other takes the URDF's. Without
+   * one, a primitive or STL is RViz's red, and another mesh the grey that RViz's mesh reader sets. Only the URDF sets
+   * the opacity of a part: RViz does not read it from mesh files, where exporters often write it wrongly.
    */
-  private look(own: OwnMaterial | null, alpha: number, instead: Instead | null): Look {
-    if (instead) return { color: instead.color, map: null, vertexColors: false, alpha, doubleSided: true, behind: instead.behind === true };
+  private look(own: OwnMaterial | null, alpha: number, override: LinkOverride | null): Look {
+    if (override) return { color: override.color, map: null, vertexColors: false, alpha, doubleSided: true, behind: override.behind === true };
     const { kind, repaints } = this.shape;
     const doubleSided = kind === "mesh";
     const behind = kind === "plane";
@@ -310,7 +311,7 @@ export class ShapeDrawing {
   }
 }
 
-/** Whether a surface shows its colour in the light of the camera, and nothing else. */
+/** Whether a surface has a plain opaque colour and the camera's light only. */
 function isPlain(material: Material): material is MeshLambertMaterial {
   if (!(material instanceof MeshLambertMaterial) || material.side !== DoubleSide) return false;
   return material.map === null && !material.vertexColors && !material.transparent;

@@ -6,19 +6,19 @@ const GEOMETRIES = { box: unitBox, cylinder: unitCylinder, cone: unitCone, spher
 
 const place = new Vector3();
 
-/** A kind of shape; one call draws all shapes of a kind. */
+/** A kind of shape; all shapes of a kind are drawn in one call. */
 export type SolidKind = keyof typeof GEOMETRIES;
 
-/** The batch for shapes of a kind; null for those that are drawn singly. */
+/** Returns the kind of batch for a shape; null for shapes that are drawn individually. */
 export function solidKind(kind: string): SolidKind | null {
   if (kind === "ellipsoid") return "sphere";
   return kind in GEOMETRIES ? (kind as SolidKind) : null;
 }
 
-/** A sphere of this share of the height of the image, or less, looks as round with few corners. */
-const SMALL = 0.06;
+/** Up to this share of the height of the image, a sphere looks round with few vertices. */
+const SMALL_SHARE = 0.06;
 
-/** A sphere that is drawn: its size is that of a unit sphere under the matrix. */
+/** A sphere to draw, as the matrix that maps the unit sphere to it. */
 interface Sphere {
   readonly matrix: Matrix4;
   readonly color: number;
@@ -26,15 +26,15 @@ interface Sphere {
 }
 
 /**
- * Draws boxes, cylinders, cones, spheres and planes that hide what is behind them; used as `CopyBatch`: `begin`, `add` each, `end`,
- * and before each frame `look`. Spheres have ten times the corners of the others, which without a GPU took two
- * fifths of the time of a frame: those that look small are drawn with fewer.
+ * Draws opaque boxes, cylinders, cones, spheres and planes. Call `begin`, `add` and `end` as with `CopyBatch`, and
+ * `chooseDetail` before each frame. Spheres have ten times the vertices of the others, which without a GPU took two fifths of
+ * the time of a frame: those that look small are drawn with fewer.
  */
 export class Solids {
   private readonly batches: ReadonlyMap<SolidKind, CopyBatch>;
   private readonly small: CopyBatch;
   private spheres: Sphere[] = [];
-  private isOld = false;
+  private isStale = false;
   private readonly softness = { value: false };
 
   constructor(parent: Object3D) {
@@ -46,7 +46,7 @@ export class Solids {
     this.small = batch(smallSphere);
   }
 
-  /** Whether they are lit softly, and not as RViz does. */
+  /** Whether the solids have the soft light instead of RViz's. */
   set isSoft(isSoft: boolean) {
     this.softness.value = isSoft;
   }
@@ -58,18 +58,18 @@ export class Solids {
     return sum;
   }
 
-  /** The number of spheres drawn with few triangles. */
+  /** The number of spheres drawn with few vertices. */
   get smallSpheres(): number {
     return this.small.size;
   }
 
-  /** Starts over; at most so many of each kind will follow. */
+  /** Removes all solids; at most this many of each kind will be added. */
   begin(counts: ReadonlyMap<SolidKind, number>): void {
     for (const [kind, batch] of this.batches) if (kind !== "sphere") batch.begin(counts.get(kind) ?? 0);
     this.spheres = [];
   }
 
-  /** `matrix` in the parent's frame, of a shape of size one; `color` is 0xrrggbb. */
+  /** Adds a solid. `matrix` is in the parent's frame and applies to the unit shape; `color` is 0xrrggbb. */
   add(kind: SolidKind, matrix: Matrix4, color: number): void {
     if (kind === "sphere") this.spheres.push({ matrix: matrix.clone(), color, isSmall: false });
     else this.batches.get(kind)?.add(matrix, 0, 1, color);
@@ -77,26 +77,26 @@ export class Solids {
 
   end(): void {
     for (const [kind, batch] of this.batches) if (kind !== "sphere") batch.end();
-    this.isOld = true;
+    this.isStale = true;
   }
 
-  /** Draws the spheres for a camera of the parent's frame. */
-  look(camera: Camera): void {
-    let changed = this.isOld;
+  /** Chooses the detail of the spheres for a camera in the parent's frame. */
+  chooseDetail(camera: Camera): void {
+    let changed = this.isStale;
     for (const sphere of this.spheres) {
-      const isSmall = shareOf(sphere.matrix, camera) < SMALL;
+      const isSmall = shareOf(sphere.matrix, camera) < SMALL_SHARE;
       changed ||= isSmall !== sphere.isSmall;
       sphere.isSmall = isSmall;
     }
-    this.isOld = false;
-    if (changed) this.deal();
+    this.isStale = false;
+    if (changed) this.fillSphereBatches();
   }
 
   dispose(): void {
     for (const batch of [...this.batches.values(), this.small]) batch.dispose();
   }
 
-  private deal(): void {
+  private fillSphereBatches(): void {
     const small = this.spheres.filter((sphere) => sphere.isSmall);
     const large = this.spheres.filter((sphere) => !sphere.isSmall);
     for (const [batch, spheres] of [[this.small, small], [this.batches.get("sphere"), large]] as const) {
@@ -107,7 +107,10 @@ export class Solids {
   }
 }
 
-/** The radius of a sphere in an image, as a share of its height: infinite for one that the camera is beside or within. */
+/**
+ * Returns the radius of a sphere in an image as a share of the image's height; infinite if the camera is inside it or
+ * level with it.
+ */
 function shareOf(matrix: Matrix4, camera: Camera): number {
   const radius = matrix.getMaxScaleOnAxis();
   const { elements } = camera.projectionMatrix;

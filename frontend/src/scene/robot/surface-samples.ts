@@ -1,57 +1,57 @@
 import { Triangle, Vector3, type BufferGeometry, type Mesh } from "three";
 import type { Vector } from "../../state/views/vector";
 
-/** Points of a surface. */
+/** The number of sample points of a surface. */
 const POINTS = 320;
-/** One sample in so many is enough to frame a robot. */
-const FEWER = 4;
-/** Steps of the R2 sequence, which fills a triangle evenly. */
+/** To frame a robot, every n-th sample is enough. */
+const FRAMING_STRIDE = 4;
+/** The steps of the R2 sequence, which fills a triangle evenly. */
 const [STEP_A, STEP_B] = [0.7548776662, 0.5698402909];
 
-/** Points that are spread evenly over a surface. */
+/** Points distributed evenly over a surface. */
 export interface SurfaceSamples {
-  /** x y z of each, m. */
+  /** x y z of each point, m. */
   readonly points: Float32Array;
-  /** The area that each represents, m^2. */
+  /** The area that each point represents, m^2. */
   readonly area: number;
 }
 
-const known = new WeakMap<BufferGeometry, SurfaceSamples>();
+const cache = new WeakMap<BufferGeometry, SurfaceSamples>();
 
-/** The points of a geometry, in its own frame; found once. */
+/** Returns the samples of a geometry in its own frame; they are computed once. */
 export function samplesOf(geometry: BufferGeometry): SurfaceSamples {
-  let samples = known.get(geometry);
-  if (!samples) known.set(geometry, (samples = spread(geometry)));
+  let samples = cache.get(geometry);
+  if (!samples) cache.set(geometry, (samples = sampleSurface(geometry)));
   return samples;
 }
 
-/** Some points on the surface of a mesh that has its place, in the fixed frame. */
+/** Returns some points on the surface of a mesh, whose world matrix must be current, in the fixed frame. */
 export function pointsOn({ geometry, matrixWorld }: Mesh): Vector[] {
   const { points } = samplesOf(geometry);
   const found: Vector[] = [];
-  for (let i = 0; i < points.length; i += 3 * FEWER) found.push(new Vector3().fromArray(points, i).applyMatrix4(matrixWorld).toArray());
+  for (let i = 0; i < points.length; i += 3 * FRAMING_STRIDE) found.push(new Vector3().fromArray(points, i).applyMatrix4(matrixWorld).toArray());
   return found;
 }
 
-function spread(geometry: BufferGeometry): SurfaceSamples {
+function sampleSurface(geometry: BufferGeometry): SurfaceSamples {
   const { index } = geometry;
   const positions = geometry.getAttribute("position");
   const count = Math.floor((index ?? positions).count / 3);
   const sums = new Float64Array(count);
   const triangle = new Triangle();
-  const take = (i: number): Triangle => {
+  const triangleAt = (i: number): Triangle => {
     const [a, b, c] = [3 * i, 3 * i + 1, 3 * i + 2].map((at) => index?.getX(at) ?? at) as [number, number, number];
     triangle.setFromAttributeAndIndices(positions, a, b, c);
     return triangle;
   };
   let area = 0;
-  for (let i = 0; i < count; i++) sums[i] = area += take(i).getArea() || 0;
+  for (let i = 0; i < count; i++) sums[i] = area += triangleAt(i).getArea() || 0;
   const points = new Float32Array(area > 0 ? 3 * POINTS : 0);
   const [point, side] = [new Vector3(), new Vector3()];
   for (let n = 0, i = 0; 3 * n < points.length; n++) {
-    const wanted = ((n + 0.5) / POINTS) * area;
-    while (i < count - 1 && (sums[i] ?? area) < wanted) i++;
-    const { a, b, c } = take(i);
+    const target = ((n + 0.5) / POINTS) * area;
+    while (i < count - 1 && (sums[i] ?? area) < target) i++;
+    const { a, b, c } = triangleAt(i);
     const [u, v] = [(n * STEP_A) % 1, (n * STEP_B) % 1];
     const isBeyond = u + v > 1;
     point.copy(a).addScaledVector(side.subVectors(b, a), isBeyond ? 1 - u : u);

@@ -8,15 +8,15 @@ import { PublishPointTool } from "./publish-point";
 import { SelectTool } from "./select";
 import type { SceneToolClass } from "./tool";
 
-/** An entry for a class of tools; its settings are declared in `viewer/config/tools.py`. */
+/** A class of tools; its settings are declared in `viewer/config/tools.py`. */
 export interface ToolEntry {
-  /** RViz's key. */
+  /** The key that RViz uses for the tool. */
   readonly key: string;
   readonly icon: IconName;
   readonly make: SceneToolClass;
 }
 
-/** RViz's tools, and nav2's. */
+/** The tools of RViz and nav2. */
 export const TOOLS: ReadonlyMap<string, ToolEntry> = new Map<string, ToolEntry>([
   ["rviz_default_plugins/Interact", { key: "i", icon: "interact", make: InteractTool }],
   ["rviz_default_plugins/MoveCamera", { key: "m", icon: "move", make: MoveCameraTool }],

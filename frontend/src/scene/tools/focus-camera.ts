@@ -1,8 +1,8 @@
 import { strings } from "../../strings";
-import { shown } from "./point-text";
+import { pointText } from "./point-text";
 import type { SceneTool, ToolContext, ToolEvent } from "./tool";
 
-/** RViz's Focus Camera: the camera looks at the point that is clicked, or in its direction where there is none. */
+/** RViz's Focus Camera: a click looks at the point under the pointer, or in its direction if there is none. */
 export class FocusCameraTool implements SceneTool {
   constructor(private readonly context: ToolContext) {}
 
@@ -16,7 +16,7 @@ export class FocusCameraTool implements SceneTool {
     const { stage, session } = this.context;
     const point = stage.picker.pointAt(event.x, event.y);
     this.context.setCursor(point ? "crosshair" : "default");
-    this.context.setHint(point ? strings.tools.hints.focus(shown(point)) : strings.tools.hints.focusNowhere);
+    this.context.setHint(point ? strings.tools.hints.focus(pointText(point)) : strings.tools.hints.focusNowhere);
     if (event.type !== "up" || event.button !== "left") return;
     const { origin, direction } = stage.picker.rayAt(event.x, event.y).ray;
     const ahead = origin.clone().add(direction);

@@ -8,10 +8,10 @@ interface Focus {
   hit: Hit;
 }
 
-/** RViz's Interact: moves things that can be moved, and the camera where there is none under the pointer. */
+/** RViz's Interact: moves objects that can be moved, or else the camera. */
 export class InteractTool implements SceneTool {
   private readonly camera: MoveCameraTool;
-  /** What is under the pointer, and what is held. */
+  /** The object under the pointer, and the object being dragged. */
   private focus: Focus | null = null;
   private held: Focus | null = null;
 
@@ -21,13 +21,13 @@ export class InteractTool implements SceneTool {
 
   activate(): void {
     this.camera.activate();
-    this.tell(true, false);
+    this.setInteraction(true, false);
   }
 
   deactivate(): void {
     this.focus = this.held = null;
     this.camera.deactivate();
-    this.tell(false, false);
+    this.setInteraction(false, false);
   }
 
   pointer(event: ToolEvent): void {
@@ -37,7 +37,7 @@ export class InteractTool implements SceneTool {
       if (event.type === "up" && !pressed) this.release(event);
       return;
     }
-    // A button that was pressed beside things moves the camera, whatever it comes over.
+    // A button pressed outside objects moves the camera, even when the pointer moves over an object.
     const free = event.type === "down" || event.type === "wheel" || !pressed;
     if (free) this.refocus(event);
     const { focus } = this;
@@ -48,19 +48,19 @@ export class InteractTool implements SceneTool {
 
   private hold(focus: Focus): void {
     this.held = focus;
-    this.tell(true, this.context.state?.rows.bool(true, "Hide Inactive Objects") === true);
+    this.setInteraction(true, this.context.state?.rows.bool(true, "Hide Inactive Objects") === true);
   }
 
   private release(event: ToolEvent): void {
     this.held = null;
-    this.tell(true, false);
+    this.setInteraction(true, false);
     this.refocus(event);
   }
 
-  /** Finds the drawing under the pointer now; notifies drawings when the pointer enters and leaves them. */
+  /** Finds the object under the pointer, and notifies drawings when the pointer enters or leaves their objects. */
   private refocus(event: ToolEvent): void {
     const { stage } = this.context;
-    const found = event.type !== "leave" && stage.isInteractive ? stage.picker.at(event.x, event.y) : null;
+    const found = event.type !== "leave" && stage.isInteractive ? stage.picker.objectAt(event.x, event.y) : null;
     const next = found?.drawing.pointer ? found : null;
     const before = this.focus;
     this.focus = next;
@@ -78,7 +78,7 @@ export class InteractTool implements SceneTool {
     return drawing.pointer?.({ ...event, type, ray, hit, setCursor, setHint }) ?? false;
   }
 
-  private tell(enabled: boolean, hideOthers: boolean): void {
+  private setInteraction(enabled: boolean, hideOthers: boolean): void {
     this.context.stage.setInteraction({ enabled, hideOthers });
   }
 }

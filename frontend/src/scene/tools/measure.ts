@@ -7,29 +7,32 @@ import { ThinLines } from "../objects/thin-lines";
 import type { SceneTool, ToolContext, ToolEvent } from "./tool";
 
 const DARK_YELLOW = "#808000";
-/** The height of a line of the label, pixels of the page. */
+/** The height of the label, CSS pixels. */
 const LABEL_PX = 20;
 
-/** RViz's Measure: the distance between two points that are clicked, shown at the middle of the line, too; a right click starts again. */
+/**
+ * RViz's Measure: the distance between two clicked points, which is also shown at the middle of the line; a right click
+ * starts again.
+ */
 export class MeasureTool implements SceneTool {
   private readonly line = new ThinLines();
   private readonly label = new LabelBatch();
-  private readonly forget: () => void;
+  private readonly stopListening: () => void;
   private start: Vector | null = null;
   private end: Vector | null = null;
-  private started = false;
+  private isMeasuring = false;
 
   constructor(private readonly context: ToolContext) {
     context.stage.viewport.scene.add(this.line.root, this.label.root);
-    // Points on two sides of a body are measured too: the line is drawn over what it goes through, as its label is.
+    // Draw the line and its label over the objects between its ends, which may be on two sides of a body.
     this.line.root.material.depthTest = false;
     this.line.root.renderOrder = 1;
-    this.forget = context.session.view.changed.on(() => this.placeLabel());
+    this.stopListening = context.session.view.changed.on(() => this.placeLabel());
     this.settingsChanged();
   }
 
   activate(): void {
-    this.started = false;
+    this.isMeasuring = false;
     this.context.setCursor("default");
     this.showLength();
   }
@@ -38,8 +41,8 @@ export class MeasureTool implements SceneTool {
     if (event.type === "wheel" || event.type === "leave") return;
     const point = this.context.stage.picker.pointAt(event.x, event.y);
     this.context.setCursor(point ? "crosshair" : "default");
-    if (this.started && point) this.draw(point);
-    if (event.type === "up" && event.button === "left") this.released(point, event.click);
+    if (this.isMeasuring && point) this.draw(point);
+    if (event.type === "up" && event.button === "left") this.onRelease(point, event.click);
     if (event.type === "up" && event.button === "right") this.clear();
     this.showLength();
   }
@@ -54,27 +57,27 @@ export class MeasureTool implements SceneTool {
   }
 
   dispose(): void {
-    this.forget();
+    this.stopListening();
     this.line.dispose();
     this.label.dispose();
     this.context.stage.loop.invalidate();
   }
 
-  /** Metres; null before there are two points. */
+  /** The distance, m; null before there are two points. */
   private get length(): number | null {
     return this.start && this.end ? distanceBetween(this.start, this.end) : null;
   }
 
-  /** A drag that ends over empty space is not for it. */
-  private released(point: Vector | null, isClick: boolean): void {
-    if (point) this.clicked(point);
-    if (point || isClick) this.context.tell(point ? "" : strings.tools.hints.nothingThere);
+  /** Handles the release of the button. A drag that ends over empty space is meant for the camera. */
+  private onRelease(point: Vector | null, isClick: boolean): void {
+    if (point) this.addPoint(point);
+    if (point || isClick) this.context.showNotice(point ? "" : strings.tools.hints.nothingThere);
   }
 
-  private clicked(point: Vector): void {
-    if (this.started) this.started = false;
+  private addPoint(point: Vector): void {
+    if (this.isMeasuring) this.isMeasuring = false;
     else {
-      this.started = true;
+      this.isMeasuring = true;
       this.start = point;
       this.draw(point);
     }
@@ -89,7 +92,7 @@ export class MeasureTool implements SceneTool {
   }
 
   private clear(): void {
-    this.started = false;
+    this.isMeasuring = false;
     this.start = this.end = null;
     this.line.setSegments(new Float32Array(0));
     this.placeLabel();

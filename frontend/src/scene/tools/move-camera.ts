@@ -10,7 +10,7 @@ const CURSORS: Readonly<Record<Motion, string>> = {
   zoom: "zoom-in",
 };
 
-/** RViz's Move Camera: the view's own way with the mouse. A click selects the link that is clicked. */
+/** RViz's Move Camera: the mouse moves the camera as the view defines it, and a click selects a link. */
 export class MoveCameraTool implements SceneTool {
   constructor(private readonly context: ToolContext) {}
 

@@ -7,7 +7,10 @@ import type { SceneTool, ToolContext, ToolEvent } from "./tool";
 const ARROW: ArrowShape = { shaftLength: 2, shaftDiameter: 0.2, headLength: 0.5, headDiameter: 0.35 };
 const GREEN = 0x00ff00;
 
-/** RViz's 2D Pose Estimate and 2D Goal Pose: press where it is on the ground, drag to where it points, release. */
+/**
+ * RViz's 2D Pose Estimate and 2D Goal Pose: press at the position on the ground, drag in the direction of the
+ * orientation, release.
+ */
 export class PoseTool implements SceneTool {
   private readonly root = new Group();
   private readonly arrow = new ArrowBatch(this.root);

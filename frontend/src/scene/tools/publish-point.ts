@@ -1,8 +1,8 @@
 import { strings } from "../../strings";
-import { shown } from "./point-text";
+import { pointText } from "./point-text";
 import type { SceneTool, ToolContext, ToolEvent } from "./tool";
 
-/** RViz's Publish Point: publishes the point of the thing that is clicked. */
+/** RViz's Publish Point: publishes the clicked point of an object. */
 export class PublishPointTool implements SceneTool {
   constructor(private readonly context: ToolContext) {}
 
@@ -16,9 +16,9 @@ export class PublishPointTool implements SceneTool {
     const { stage, session, state } = this.context;
     const point = stage.picker.pointAt(event.x, event.y);
     this.context.setCursor(point ? "crosshair" : "default");
-    this.context.setHint(point ? strings.tools.hints.point(shown(point)) : strings.tools.hints.pointNowhere);
+    this.context.setHint(point ? strings.tools.hints.point(pointText(point)) : strings.tools.hints.pointNowhere);
     if (event.type !== "up" || event.button !== "left") return;
-    if (!point && event.click) this.context.tell(strings.tools.hints.nothingThere);
+    if (!point && event.click) this.context.showNotice(strings.tools.hints.nothingThere);
     if (!point || !state) return;
     const [x, y, z] = point;
     session.connection.send({ type: "point_chosen", tool: state.id, x, y, z });

@@ -5,13 +5,15 @@ import { strings } from "../../strings";
 import { MoveCameraTool } from "./move-camera";
 import type { SceneTool, ToolContext, ToolEvent } from "./tool";
 
-/** RViz's Select: a click or a rectangle; Shift adds, Ctrl takes away, Alt moves the camera, F looks at what is selected. */
+/**
+ * RViz's Select: click or drag a rectangle. Shift adds, Ctrl removes, Alt moves the camera, F looks at the selection.
+ */
 export class SelectTool implements SceneTool {
   readonly grabsKeys = true;
   private readonly camera: MoveCameraTool;
   private readonly band = h("div", { class: "rubber-band" });
   private from: Vector2 | null = null;
-  private moving = false;
+  private isMovingCamera = false;
 
   constructor(private readonly context: ToolContext) {
     this.camera = new MoveCameraTool(context);
@@ -23,13 +25,13 @@ export class SelectTool implements SceneTool {
   }
 
   deactivate(): void {
-    this.end();
+    this.endDrag();
     this.camera.deactivate();
   }
 
   pointer(event: ToolEvent): void {
-    if (event.type === "down") this.moving = event.alt;
-    if (this.moving || event.type === "wheel") {
+    if (event.type === "down") this.isMovingCamera = event.alt;
+    if (this.isMovingCamera || event.type === "wheel") {
       this.camera.pointer({ ...event, click: false });
       this.context.setHint(strings.tools.hints.select);
       return;
@@ -44,17 +46,17 @@ export class SelectTool implements SceneTool {
       const mode: SelectionMode = event.shift ? "add" : event.ctrl ? "remove" : "replace";
       if (event.click) stage.picker.selectAt(event.x, event.y, mode);
       else stage.picker.selectBox(this.from, at, mode);
-      this.end();
+      this.endDrag();
     }
   }
 
-  key(key: string): boolean {
+  pressKey(key: string): boolean {
     if (key === "f") this.context.stage.focusSelected();
     return true;
   }
 
   dispose(): void {
-    this.end();
+    this.endDrag();
   }
 
   private draw(a: Vector2, b: Vector2): void {
@@ -66,7 +68,7 @@ export class SelectTool implements SceneTool {
     this.context.stage.viewport.container.append(this.band);
   }
 
-  private end(): void {
+  private endDrag(): void {
     this.from = null;
     this.band.remove();
   }

@@ -4,17 +4,17 @@ import type { Stage } from "../stage";
 
 export type PointerButton = "left" | "middle" | "right";
 
-/** An event of the mouse, a pen or a finger over the scene. */
+/** An event of a mouse, pen or finger over the scene. */
 export interface ToolEvent {
   readonly type: "move" | "down" | "up" | "wheel" | "leave";
-  /** Pixels from the canvas' upper left corner, and since the event before. */
+  /** The position in pixels from the canvas's upper left corner, and the movement since the last event. */
   readonly x: number;
   readonly y: number;
   readonly dx: number;
   readonly dy: number;
-  /** 120 a notch, positive away from the user. */
+  /** 120 per notch, positive away from the user. */
   readonly wheel: number;
-  /** The button that went down or up. */
+  /** The button that was pressed or released. */
   readonly button: PointerButton | null;
   readonly left: boolean;
   readonly middle: boolean;
@@ -22,36 +22,39 @@ export interface ToolEvent {
   readonly shift: boolean;
   readonly ctrl: boolean;
   readonly alt: boolean;
-  /** Of `up`: the pointer hardly moved since it went down. */
+  /** For `up`: whether the pointer hardly moved since the button was pressed. */
   readonly click: boolean;
 }
 
-/** The objects that a tool works with. */
+/** The objects that a tool uses. */
 export interface ToolContext {
   readonly stage: Stage;
   readonly session: Session;
-  /** Its settings; null for the tool that exists before the server has sent any. */
+  /** The tool's settings; null for the fallback tool, before the server has sent any. */
   readonly state: ToolState | null;
   setHint(text: string): void;
-  /** Shows over the scene why it did not do the requested action; an empty text clears that. */
-  tell(text: string): void;
-  /** A CSS cursor. */
+  /** Shows over the scene why the tool did not do what was requested; an empty text hides the notice. */
+  showNotice(text: string): void;
+  /** Sets a CSS cursor. */
   setCursor(cursor: string): void;
-  /** The tool did what it is for: the default one is taken in hand. */
+  /** Ends the tool's task: the default tool becomes active. */
   finish(): void;
 }
 
-/** A tool, which handles the mouse while it is in hand: one class for each of RViz's, listed in `catalog.ts`. */
+/** A tool, which handles the mouse while it is active; `catalog.ts` lists one class for each of RViz's tools. */
 export interface SceneTool {
-  /** Gets all keys, those of other tools included; only its own and Escape put it away, as RViz's Select. */
+  /**
+   * Whether the tool receives all keys, those of other tools included; only its own key and Escape then deactivate it,
+   * as with RViz's Select.
+   */
   readonly grabsKeys?: boolean;
   activate?(): void;
   deactivate?(): void;
   pointer(event: ToolEvent): void;
-  /** True for a key that it uses. */
-  key?(key: string): boolean;
+  /** Handles a key; returns true if the tool uses it. */
+  pressKey?(key: string): boolean;
   settingsChanged?(): void;
-  /** What tests read. */
+  /** Returns the tool's state, for tests. */
   inspect?(): object;
   dispose?(): void;
 }

@@ -5,65 +5,65 @@ import { TOOLS } from "./catalog";
 import { MoveCameraTool } from "./move-camera";
 import type { SceneTool, ToolContext } from "./tool";
 
-/** The tools of the toolbar at work: one of them has the mouse. */
+/** The tools of the toolbar, of which the active one handles the mouse. */
 export class Toolbox {
-  private readonly made = new Map<string, { state: ToolState; tool: SceneTool }>();
-  /** In hand while there is no tool at all. */
+  private readonly tools = new Map<string, { state: ToolState; tool: SceneTool }>();
+  /** The tool that is active while the toolbar has none. */
   private readonly fallback: SceneTool;
-  private inHand: SceneTool;
+  private active: SceneTool;
 
   constructor(
     private readonly stage: Stage,
     private readonly session: Session,
   ) {
     const { tools, view } = session;
-    this.fallback = this.inHand = new MoveCameraTool(this.context(null));
+    this.fallback = this.active = new MoveCameraTool(this.context(null));
     this.fallback.activate?.();
-    tools.currentChanged.on((state) => this.take(state));
-    tools.valueChanged.on((state) => this.made.get(state.id)?.tool.settingsChanged?.());
-    // The mouse does other things in another class of view.
+    tools.currentChanged.on((state) => this.activate(state));
+    tools.valueChanged.on((state) => this.tools.get(state.id)?.tool.settingsChanged?.());
+    // In another class of view the mouse works differently: update the tool's hint.
     let { cls } = view.current;
     view.changed.on(() => {
       if (cls === view.current.cls) return;
       cls = view.current.cls;
-      this.inHand.activate?.();
+      this.active.activate?.();
     });
-    this.take(tools.current);
+    this.activate(tools.current);
   }
 
   get current(): SceneTool {
-    return this.inHand;
+    return this.active;
   }
 
-  private take(state: ToolState | null): void {
-    this.tidy();
+  private activate(state: ToolState | null): void {
+    this.disposeRemoved();
     const next = state ? this.toolOf(state) : this.fallback;
-    if (next === this.inHand) return;
-    this.inHand.deactivate?.();
-    this.inHand = next;
+    if (next === this.active) return;
+    this.active.deactivate?.();
+    this.active = next;
     next.activate?.();
   }
 
   private toolOf(state: ToolState): SceneTool {
-    const known = this.made.get(state.id);
+    const known = this.tools.get(state.id);
     if (known) return known.tool;
     const Tool = TOOLS.get(state.cls)?.make;
     const tool = Tool ? new Tool(this.context(state)) : this.fallback;
-    this.made.set(state.id, { state, tool });
+    this.tools.set(state.id, { state, tool });
     return tool;
   }
 
-  /** Releases tools that the server has removed or sent again. */
-  private tidy(): void {
+  /** Disposes of tools that the server has removed or replaced. */
+  private disposeRemoved(): void {
     const { tools } = this.session.tools;
-    for (const [id, { state, tool }] of this.made) {
+    for (const [id, { state, tool }] of this.tools) {
       if (tools.includes(state)) continue;
-      if (tool === this.inHand) {
+      if (tool === this.active) {
         tool.deactivate?.();
-        this.inHand = this.fallback;
+        this.active = this.fallback;
       }
       tool.dispose?.();
-      this.made.delete(id);
+      this.tools.delete(id);
     }
   }
 
@@ -77,7 +77,7 @@ export class Toolbox {
       setHint: (text) => {
         tools.hint = text;
       },
-      tell: (text) => tools.told.emit(text),
+      showNotice: (text) => tools.noticeShown.emit(text),
       setCursor: (cursor) => {
         stage.viewport.canvas.style.cursor = cursor;
       },

@@ -4,47 +4,50 @@ import { Signal } from "../../signal";
 import type { TextStorage } from "../../storage";
 import { Snapping } from "../modelling/snapping";
 
-/** The requested pose of the edited part: metres, or the components of an axis; rad, empty for an axis. */
+/**
+ * The requested values of the edited part: position in m or components of an axis, and angles in rad, empty for an
+ * axis.
+ */
 export interface Draft {
   readonly xyz: readonly number[];
   readonly rpy: readonly number[];
 }
 
 export type HandleMode = "translate" | "rotate";
-/** The frame whose axes the handles have. */
+/** The frame along whose axes the handles are oriented. */
 export type HandleFrame = "parent" | "own";
 
 const SNAPPING = "linkwright.editing-snapping";
-/** After the last change, ms. */
-const ASKS_AFTER = 120;
-const NOTHING = 1e-9;
+/** The preview is requested this time after the last change, ms. */
+const PREVIEW_DELAY_MS = 120;
+const MIN_CHANGE = 1e-9;
 
-/** Editing of a robot: the editable parts, the requested changes, and the changes that result in the files. */
+/** Editing of a robot: the editable parts, the requested values, and the resulting changes of the files. */
 export class EditingState {
-  /** A change of the editable parts, the selection, the preview, the undo stack, or the refusal. */
+  /** The editable parts, the selection, the preview, the undo stack or the refusal changed. */
   readonly changed = new Signal();
-  /** The place of the draft of the chosen part. */
+  /** The draft of the chosen part changed. */
   readonly draftChanged = new Signal();
-  /** Whether editing is active. */
+  /** Editing started or ended. */
   readonly activeChanged = new Signal();
-  /** The user requested to edit a link. */
-  readonly wanted = new Signal();
+  /** The user asked to edit a link. */
+  readonly editRequested = new Signal();
   readonly snapping: Snapping;
   preview: EditPreview | null = null;
-  /** Why nothing was written. */
+  /** Why nothing was written; null after success. */
   refusal: DiagnosticItem | null = null;
-  /** The files that were written last. */
+  /** The files written last. */
   written: readonly string[] = [];
   canUndo = false;
   canRedo = false;
   private link: { display: string; link: string } | null = null;
-  private known: EditableParts | null = null;
+  private editable: EditableParts | null = null;
   private part: EditablePart | null = null;
-  private asked: Draft | null = null;
-  /** The draft was written, and the robot with it is not received yet. */
+  private currentDraft: Draft | null = null;
+  /** Whether the draft was written, but the resulting robot has not arrived yet. */
   private isWritten = false;
-  private number = 0;
-  private together = false;
+  private previewNumber = 0;
+  private changesAll = false;
   private timer: ReturnType<typeof setTimeout> | undefined;
   private holders = 0;
   private handleMode: HandleMode = "translate";
@@ -55,16 +58,16 @@ export class EditingState {
     storage: TextStorage,
   ) {
     this.snapping = new Snapping(storage, SNAPPING, { on: false, length: 0.01 });
-    connection.on("editable_parts", (message) => this.take(message));
+    connection.on("editable_parts", (message) => this.setParts(message));
     connection.on("edit_preview", (message) => {
-      if (message.number !== this.number) return;
+      if (message.number !== this.previewNumber) return;
       this.preview = message;
       this.changed.emit();
     });
     connection.on("edit_written", ({ files, refusal }) => {
       this.refusal = refusal;
       this.written = files;
-      this.isWritten = refusal === null && this.asked !== null;
+      this.isWritten = refusal === null && this.currentDraft !== null;
       this.preview = null;
       this.changed.emit();
       this.draftChanged.emit();
@@ -74,7 +77,7 @@ export class EditingState {
       this.changed.emit();
     });
     connection.on("description_changed", ({ display }) => {
-      if (this.active && display === this.link?.display) this.ask();
+      if (this.active && display === this.link?.display) this.requestParts();
     });
     connection.on("robot_scene", ({ display }) => {
       if (display === this.link?.display && this.isWritten) this.reset();
@@ -87,12 +90,12 @@ export class EditingState {
   }
 
   get parts(): readonly EditablePart[] {
-    return this.known?.parts ?? [];
+    return this.editable?.parts ?? [];
   }
 
-  /** Why nothing can be edited; empty where it can. */
+  /** Why nothing can be edited; empty if editing is possible. */
   get whyNot(): string {
-    return this.known?.why_not ?? "";
+    return this.editable?.why_not ?? "";
   }
 
   get current(): { display: string; link: string } | null {
@@ -103,19 +106,19 @@ export class EditingState {
     return this.part;
   }
 
-  /** Null where nothing was moved. */
+  /** The draft; null if nothing was moved. */
   get draft(): Draft | null {
-    return this.asked;
+    return this.currentDraft;
   }
 
-  /** Whether the draft still has to be written, or thrown away. */
+  /** Whether the draft is neither written nor discarded. */
   get isOpen(): boolean {
-    return this.asked !== null && !this.isWritten;
+    return this.currentDraft !== null && !this.isWritten;
   }
 
-  /** Whether all that one text makes may change. */
-  get isTogether(): boolean {
-    return this.together;
+  /** Whether the edit may change all elements that result from the same text. */
+  get isChangeOfAll(): boolean {
+    return this.changesAll;
   }
 
   get mode(): HandleMode {
@@ -138,11 +141,11 @@ export class EditingState {
     this.draftChanged.emit();
   }
 
-  /** Edits until the returned function is called. */
+  /** Activates editing until the returned function is called. */
   hold(): () => void {
     this.holders += 1;
     this.activeChanged.emit();
-    this.ask();
+    this.requestParts();
     this.draftChanged.emit();
     let done = false;
     return () => {
@@ -153,14 +156,14 @@ export class EditingState {
     };
   }
 
-  /** The link that the user looks at; null for none. */
+  /** Edits the parts of the link that the user selected; null for none. */
   follow(link: { display: string; link: string } | null): void {
     if (link?.display === this.link?.display && link?.link === this.link?.link) return;
     this.link = link;
-    this.known = this.part = null;
+    this.editable = this.part = null;
     this.written = [];
     this.reset();
-    this.ask();
+    this.requestParts();
   }
 
   choose(part: EditablePart): void {
@@ -170,23 +173,23 @@ export class EditingState {
     this.reset();
   }
 
-  /** Sets the requested pose of the chosen part; the preview is requested when the pointer rests. */
+  /** Sets the requested values of the chosen part; the preview is requested once the pointer rests. */
   move(draft: Draft): void {
     const { part } = this;
     if (!part || this.whyNot !== "") return;
     const stays = equal(draft.xyz, part.xyz) && equal(draft.rpy, part.rpy);
-    this.asked = stays ? null : draft;
-    this.isWritten = this.together = false;
+    this.currentDraft = stays ? null : draft;
+    this.isWritten = this.changesAll = false;
     this.written = [];
-    this.forget();
+    this.cancelPreview();
     this.draftChanged.emit();
-    if (this.asked) this.timer = setTimeout(() => this.askPreview(), ASKS_AFTER);
+    if (this.currentDraft) this.timer = setTimeout(() => this.requestPreview(), PREVIEW_DELAY_MS);
   }
 
-  /** Asks for the same once more, where all that the text makes may change. */
+  /** Requests the same edit for all elements that result from the same text. */
   changeAll(): void {
-    this.together = true;
-    this.askPreview();
+    this.changesAll = true;
+    this.requestPreview();
     this.changed.emit();
   }
 
@@ -205,46 +208,49 @@ export class EditingState {
     this.connection.send({ type: "redo_edit" });
   }
 
-  /** Throws the draft away. */
+  /** Discards the draft. */
   reset(): void {
-    this.asked = null;
-    this.isWritten = this.together = false;
-    this.forget();
+    this.currentDraft = null;
+    this.isWritten = this.changesAll = false;
+    this.cancelPreview();
     this.draftChanged.emit();
   }
 
-  private forget(): void {
+  private cancelPreview(): void {
     clearTimeout(this.timer);
-    this.number += 1;
+    this.previewNumber += 1;
     this.preview = this.refusal = null;
     this.changed.emit();
   }
 
-  private ask(): void {
+  private requestParts(): void {
     if (this.active && this.link) this.connection.send({ type: "ask_editable_parts", ...this.link });
   }
 
-  private askPreview(): void {
-    const { part, asked, link } = this;
-    if (!part || !asked || !link) return;
-    this.number += 1;
+  private requestPreview(): void {
+    const { part, currentDraft, link } = this;
+    if (!part || !currentDraft || !link) return;
+    this.previewNumber += 1;
     this.preview = null;
     const { name, index } = part;
-    const xyz = equal(asked.xyz, part.xyz) ? null : [...asked.xyz];
-    const rpy = equal(asked.rpy, part.rpy) ? null : [...asked.rpy];
-    const { number, together } = this;
+    const xyz = equal(currentDraft.xyz, part.xyz) ? null : [...currentDraft.xyz];
+    const rpy = equal(currentDraft.rpy, part.rpy) ? null : [...currentDraft.rpy];
+    const { previewNumber: number, changesAll: together } = this;
     this.connection.send({ type: "preview_edit", number, display: link.display, part: part.part, name, index, xyz, rpy, together });
   }
 
-  /** A draft stays if its starting pose is unchanged: then another part of the robot has changed. */
-  private take(message: EditableParts): void {
+  /**
+   * Handles new parts. The draft stays if the part's own values are unchanged, which means that another part of the
+   * robot has changed.
+   */
+  private setParts(message: EditableParts): void {
     if (message.display !== this.link?.display || message.link !== this.link.link) return;
-    this.known = message;
+    this.editable = message;
     const before = this.part;
     this.part = message.parts.find((part) => isSame(part, before)) ?? message.parts[0] ?? null;
     const stays = before && this.part && isSame(before, this.part) && equal(before.xyz, this.part.xyz) && equal(before.rpy, this.part.rpy);
     if (!stays) this.reset();
-    else if (this.isOpen) this.askPreview();
+    else if (this.isOpen) this.requestPreview();
     this.changed.emit();
     this.draftChanged.emit();
   }
@@ -255,5 +261,5 @@ function isSame(one: EditablePart, other: EditablePart | null): boolean {
 }
 
 function equal(some: readonly number[], others: readonly number[]): boolean {
-  return some.length === others.length && some.every((value, i) => Math.abs(value - (others[i] ?? NaN)) < NOTHING);
+  return some.length === others.length && some.every((value, i) => Math.abs(value - (others[i] ?? NaN)) < MIN_CHANGE);
 }

@@ -1,10 +1,10 @@
-/** x, y, z, w */
+/** The components x, y, z, w. */
 export type Quaternion = readonly [number, number, number, number];
 
-/** Below this pitch is a right angle, and only the sum or difference of roll and yaw counts. */
+/** Below this, the cosine of pitch counts as 0, and only the sum or difference of roll and yaw matters. */
 const GIMBAL_LOCK = 1e-7;
 
-/** The rotation of roll, pitch and yaw (rad) about the fixed axes, as URDF has them. */
+/** Returns the rotation of roll, pitch and yaw (rad) about the fixed axes, as in URDF. */
 export function quaternionOf([roll = 0, pitch = 0, yaw = 0]: readonly number[]): Quaternion {
   const [sr, cr] = [Math.sin(roll / 2), Math.cos(roll / 2)];
   const [sp, cp] = [Math.sin(pitch / 2), Math.cos(pitch / 2)];
@@ -12,7 +12,7 @@ export function quaternionOf([roll = 0, pitch = 0, yaw = 0]: readonly number[]):
   return [sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy];
 }
 
-/** Roll, pitch and yaw of a rotation: of all equivalent ones those that differ least from `near`. */
+/** Returns roll, pitch and yaw of a rotation: of all equivalent values, those closest to `near`. */
 export function nearestRpy([x, y, z, w]: Quaternion, near: readonly number[]): [number, number, number] {
   const [nearRoll = 0, nearPitch = 0, nearYaw = 0] = near;
   const along = 1 - 2 * (y * y + z * z);
@@ -21,18 +21,18 @@ export function nearestRpy([x, y, z, w]: Quaternion, near: readonly number[]): [
   const pitch = Math.atan2(-2 * (x * z - y * w), level);
   if (level < GIMBAL_LOCK) {
     const turn = Math.atan2(-2 * (x * y - z * w), 1 - 2 * (x * x + z * z));
-    return [nearRoll, toward(pitch, nearPitch), toward(pitch > 0 ? turn + nearRoll : turn - nearRoll, nearYaw)];
+    return [nearRoll, nearestAngle(pitch, nearPitch), nearestAngle(pitch > 0 ? turn + nearRoll : turn - nearRoll, nearYaw)];
   }
   const roll = Math.atan2(2 * (y * z + x * w), 1 - 2 * (x * x + y * y));
   const yaw = Math.atan2(across, along);
-  const turned = ([r, p, h]: readonly [number, number, number]): [number, number, number] => [toward(r, nearRoll), toward(p, nearPitch), toward(h, nearYaw)];
+  const turned = ([r, p, h]: readonly [number, number, number]): [number, number, number] => [nearestAngle(r, nearRoll), nearestAngle(p, nearPitch), nearestAngle(h, nearYaw)];
   const [first, second] = [turned([roll, pitch, yaw]), turned([roll + Math.PI, Math.PI - pitch, yaw + Math.PI])];
   const far = (rpy: readonly number[]): number => rpy.reduce((sum, angle, i) => sum + Math.abs(angle - (near[i] ?? 0)), 0);
   return far(second) < far(first) - 1e-9 ? second : first;
 }
 
-/** The same angle within half a turn of another. */
-function toward(angle: number, near: number): number {
+/** Returns the equivalent angle within half a turn of another. */
+function nearestAngle(angle: number, near: number): number {
   const turned = angle - near;
   return near + Math.atan2(Math.sin(turned), Math.cos(turned));
 }

@@ -8,13 +8,13 @@ import { Snapping } from "./snapping";
 /** The mode of the gizmo. */
 export type GizmoMode = "translate" | "rotate" | "scale";
 
-/** The object that a click in the scene adds; `address` is that of a model. */
+/** The entity that the next click in the scene adds; `address` is that of a model. */
 export interface Placing {
   readonly kind: NewKind;
   readonly address: string;
 }
 
-/** Something to put where it is dropped: pixels from the window's upper left corner; null for the middle of the scene. */
+/** An entity dropped onto the scene: pixels from the window's upper left corner; null for the centre of the scene. */
 export interface Drop {
   readonly placing: Placing;
   readonly at: { readonly x: number; readonly y: number } | null;
@@ -29,38 +29,38 @@ const NOTHING: Omit<ModellingState, "type"> = {
   can_redo: false,
   entities: [],
 };
-/** The least distance between a copy and its original, m. */
-const LEAST_OFFSET = 0.5;
+/** The minimum distance between a copy and its original, m. */
+const MIN_OFFSET = 0.5;
 
-/** Modelling the world: the state of its file from the server, and this page's selection and placement. */
+/** Modelling of the world: the state of its file from the server, and this page's selection and tool. */
 export class Modelling {
-  /** The world, or whether it can be edited, has changed. */
+  /** The world, or whether it can be edited, changed. */
   readonly changed = new Signal();
   readonly selectionChanged = new Signal();
-  /** The gizmo does something else, or something else is put into the world. */
+  /** The mode of the gizmo, or the entity being placed, changed. */
   readonly toolChanged = new Signal();
-  /** The models that may be added are known. */
-  readonly offered = new Signal<readonly ModelChoice[]>();
-  /** Something was dropped onto the scene; see `takeDrop`. */
+  /** The models that can be added have arrived. */
+  readonly modelsArrived = new Signal<readonly ModelChoice[]>();
+  /** An entity was dropped onto the scene; see `takeDrop`. */
   readonly dropped = new Signal();
   readonly snapping: Snapping;
   private world = NOTHING;
   private names: readonly string[] = [];
   private mode: GizmoMode = "translate";
-  private inHand: Placing | null = null;
-  private falling: Drop | null = null;
+  private chosen: Placing | null = null;
+  private lastDrop: Drop | null = null;
   private clipboard: readonly string[] = [];
-  /** This page added objects: the new ones of the next state are selected. */
-  private makes = false;
+  /** Whether this page added entities, so that the new ones of the next state are to be selected. */
+  private selectsNew = false;
 
   constructor(
     private readonly connection: Connection,
     storage: TextStorage,
   ) {
     this.snapping = new Snapping(storage);
-    connection.on("modelling_state", (state) => this.take(state));
-    connection.on("model_choices", ({ models }) => this.offered.emit(models));
-    connection.on("simulation_notice", () => (this.makes = false));
+    connection.on("modelling_state", (state) => this.setState(state));
+    connection.on("model_choices", ({ models }) => this.modelsArrived.emit(models));
+    connection.on("simulation_notice", () => (this.selectsNew = false));
   }
 
   /** Whether there is a world that can be edited. */
@@ -72,7 +72,7 @@ export class Modelling {
     return this.world.active;
   }
 
-  /** Null for a world that was never saved. */
+  /** The file of the world; null if it was never saved. */
   get file(): string | null {
     return this.world.file;
   }
@@ -93,7 +93,7 @@ export class Modelling {
     return this.world.entities;
   }
 
-  /** Names, in the order of selecting. */
+  /** The names of the selected entities, in the order of selection. */
   get selected(): readonly string[] {
     return this.names;
   }
@@ -113,7 +113,7 @@ export class Modelling {
   }
 
   get placing(): Placing | null {
-    return this.inHand;
+    return this.chosen;
   }
 
   /** Whether the selection can be grouped into one model. */
@@ -135,29 +135,29 @@ export class Modelling {
     return this.world.entities.find((entity) => entity.name === name) ?? null;
   }
 
-  /** `toggle` adds unselected objects, and removes selected ones. */
+  /** Selects entities; `toggle` adds unselected ones and removes selected ones. */
   select(names: readonly string[], mode: "replace" | "toggle" = "replace"): void {
     const others = this.names.filter((name) => !names.includes(name));
     const added = names.filter((name) => !this.names.includes(name));
-    this.choose(mode === "replace" ? names : [...others, ...added]);
+    this.setSelection(mode === "replace" ? names : [...others, ...added]);
   }
 
-  /** Takes something in hand that the next click puts into the world; null for nothing. */
+  /** Chooses the entity that the next click in the scene adds; null for none. */
   place(placing: Placing | null): void {
-    this.inHand = placing;
+    this.chosen = placing;
     this.toolChanged.emit();
   }
 
-  /** The user drops something onto the scene. */
+  /** Drops an entity onto the scene. */
   drop(drop: Drop): void {
-    this.falling = drop;
+    this.lastDrop = drop;
     this.dropped.emit();
   }
 
-  /** The last drop, returned only once: the scene may have arrived later. */
+  /** Returns the last drop once; the scene may load only after the drop. */
   takeDrop(): Drop | null {
-    const drop = this.falling;
-    this.falling = null;
+    const drop = this.lastDrop;
+    this.lastDrop = null;
     return drop;
   }
 
@@ -166,14 +166,14 @@ export class Modelling {
   }
 
   add({ kind, address }: Placing, { pose, size }: Placement): void {
-    this.makes = true;
+    this.selectsNew = true;
     this.connection.send({ type: "add_entity", shape: kind, address, pose: [...pose], size: [...size] });
   }
 
-  /** All of them are one step of undo. */
+  /** Applies changes as one step of undo. */
   change(changes: readonly Change[]): void {
     if (changes.length === 0) return;
-    if (changes.some(({ new_name }) => typeof new_name === "string")) this.makes = true;
+    if (changes.some(({ new_name }) => typeof new_name === "string")) this.selectsNew = true;
     const stays = { pose: null, size: null, new_name: null, static: null, colour: null };
     this.connection.send({ type: "change_entities", changes: changes.map((change) => ({ ...stays, ...change })) });
   }
@@ -183,11 +183,11 @@ export class Modelling {
   }
 
   paste(): void {
-    this.copies(this.clipboard.filter((name) => this.find(name)));
+    this.sendCopies(this.clipboard.filter((name) => this.find(name)));
   }
 
   duplicate(): void {
-    this.copies(this.names);
+    this.sendCopies(this.names);
   }
 
   remove(): void {
@@ -196,14 +196,14 @@ export class Modelling {
 
   group(): void {
     if (!this.canGroup) return;
-    this.makes = true;
+    this.selectsNew = true;
     this.connection.send({ type: "group_entities", names: [...this.names], name: "group" });
   }
 
   ungroup(): void {
     for (const { name, parts } of this.selectedEntities) {
       if (parts.length === 0) continue;
-      this.makes = true;
+      this.selectsNew = true;
       this.connection.send({ type: "ungroup_entity", name });
     }
   }
@@ -216,36 +216,36 @@ export class Modelling {
     if (this.canRedo) this.connection.send({ type: "redo_world" });
   }
 
-  /** Saves it into its file, or to `path`. */
+  /** Saves the world to its file, or to `path`. */
   save(path: string | null): void {
     this.connection.send({ type: "save_world", path });
   }
 
-  askModels(): void {
+  requestModels(): void {
     this.connection.send({ type: "ask_models" });
   }
 
-  private copies(names: readonly string[]): void {
+  private sendCopies(names: readonly string[]): void {
     if (names.length === 0) return;
-    this.makes = true;
-    const step = Math.max(LEAST_OFFSET, this.snapping.metres);
+    this.selectsNew = true;
+    const step = Math.max(MIN_OFFSET, this.snapping.metres);
     this.connection.send({ type: "copy_entities", names: [...names], offset: [step, step, 0] });
   }
 
-  private take(state: ModellingState): void {
+  private setState(state: ModellingState): void {
     const before = new Set(this.world.entities.map(({ name }) => name));
     this.world = state;
     const news = state.entities.map(({ name }) => name).filter((name) => !before.has(name));
     const left = state.active ? this.names.filter((name) => this.find(name)) : [];
-    if (!state.active && this.inHand) this.place(null);
+    if (!state.active && this.chosen) this.place(null);
     this.changed.emit();
-    if (this.makes && news.length > 0) {
-      this.makes = false;
-      this.choose(news);
-    } else if (left.length < this.names.length) this.choose(left);
+    if (this.selectsNew && news.length > 0) {
+      this.selectsNew = false;
+      this.setSelection(news);
+    } else if (left.length < this.names.length) this.setSelection(left);
   }
 
-  private choose(names: readonly string[]): void {
+  private setSelection(names: readonly string[]): void {
     if (names.length === this.names.length && names.every((name, i) => name === this.names[i])) return;
     this.names = names;
     this.selectionChanged.emit();

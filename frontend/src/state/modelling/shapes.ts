@@ -1,21 +1,21 @@
 import type { AddEntity, EntityChange, WorldEntity } from "../../protocol";
-import { snapped } from "./snapping";
+import { snap } from "./snapping";
 
 export type NewKind = AddEntity["shape"];
 export type Shape = NonNullable<WorldEntity["shape"]>;
-/** A place of the ground: x and y in the world, m. */
+/** A position on the ground: x and y in the world, m. */
 export type Place = readonly [number, number];
 
-/** A change of an object; properties that are not given stay. */
+/** A change of an entity; omitted properties stay. */
 export type Change = Pick<EntityChange, "name"> & Partial<EntityChange>;
 
-/** The size of new walls, metres. */
+/** The thickness and height of new walls, m. */
 const THICKNESS = 0.1;
 const HEIGHT = 1;
-/** Nothing gets smaller than this, m. */
-export const LEAST_SIZE = 0.001;
+/** The minimum size, m. */
+export const MIN_SIZE = 0.001;
 
-/** The sizes of new objects, m, as on the server: x y z; radius and length of a cylinder; the radius of a sphere. */
+/** The sizes of new entities, m, as on the server: x y z; radius and length of a cylinder; radius of a sphere. */
 const SIZES: Readonly<Partial<Record<NewKind, readonly number[]>>> = {
   box: [0.5, 0.5, 0.5],
   cylinder: [0.25, 0.5],
@@ -25,20 +25,20 @@ const SIZES: Readonly<Partial<Record<NewKind, readonly number[]>>> = {
 /** The height of new lights, m. */
 const LIGHT_HEIGHTS: Readonly<Partial<Record<NewKind, number>>> = { point_light: 2, spot_light: 2, directional_light: 5 };
 
-/** An object to add: its pose in the world, and its size. */
+/** The pose of an entity in the world, and its size. */
 export interface Placement {
   readonly pose: readonly number[];
   readonly size: readonly number[];
 }
 
-/** The placement of a new object on the ground. */
+/** Returns the placement of a new entity on the ground. */
 export function placementAt(kind: NewKind, [x, y]: Place): Placement {
   const size = SIZES[kind] ?? [];
   const z = LIGHT_HEIGHTS[kind] ?? (isShape(kind) ? restingHeight(kind, size) : 0);
   return { pose: [x, y, z, 0, 0, 0], size };
 }
 
-/** The wall whose foot runs from one place of the ground to another; null if they are too close. */
+/** Returns the wall between two positions on the ground; null if they are too close. */
 export function wallBetween(a: Place, b: Place): Placement | null {
   const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
   const length = Math.hypot(dx, dy);
@@ -47,40 +47,40 @@ export function wallBetween(a: Place, b: Place): Placement | null {
   return { pose: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, restingHeight("wall", size), 0, 0, Math.atan2(dy, dx)], size };
 }
 
-/** The height of the origin of a shape that rests on the ground, m. */
+/** Returns the height of a shape's origin when it rests on the ground, m. */
 function restingHeight(shape: Shape, size: readonly number[]): number {
   const [first = 0, second = 0, third = 0] = size;
   if (shape === "sphere") return first;
   return (shape === "cylinder" ? second : third) / 2;
 }
 
-/** A size scaled along x, y and z: round shapes follow the axis that is scaled most. */
+/** Scales a size along x, y and z; a round dimension follows its axis that is scaled most. */
 export function scaledSize(shape: Shape, size: readonly number[], scale: readonly number[], step: number): number[] {
   const [sx = 1, sy = 1, sz = 1] = scale;
-  const factors = shape === "sphere" ? [strongest(sx, sy, sz)] : shape === "cylinder" ? [strongest(sx, sy), sz] : [sx, sy, sz];
-  // Dimensions that are not scaled stay off the grid as they were.
+  const factors = shape === "sphere" ? [largestFactor(sx, sy, sz)] : shape === "cylinder" ? [largestFactor(sx, sy), sz] : [sx, sy, sz];
+  // Dimensions that are not scaled may remain off the grid.
   return size.map((length, i) => {
     const factor = Math.abs(factors[i] ?? 1);
-    return factor === 1 ? length : Math.max(step || LEAST_SIZE, snapped(length * factor, step));
+    return factor === 1 ? length : Math.max(step || MIN_SIZE, snap(length * factor, step));
   });
 }
 
-/** The change that resizes an object; an upright one keeps its foot in place. */
-export function resized({ name, shape, size: before, pose }: WorldEntity, size: readonly number[]): Change {
+/** Returns the change that resizes an entity; the bottom of an entity that is not tilted stays at its height. */
+export function resizeChange({ name, shape, size: before, pose }: WorldEntity, size: readonly number[]): Change {
   const [x = 0, y = 0, z = 0, roll = 0, pitch = 0, yaw = 0] = pose;
   const change = { name, size: [...size] };
   if (shape === null || roll !== 0 || pitch !== 0) return change;
   const rise = restingHeight(shape, size) - restingHeight(shape, before);
-  return rise === 0 ? change : { ...change, pose: [x, y, tidy(z + rise), roll, pitch, yaw] };
+  return rise === 0 ? change : { ...change, pose: [x, y, roundNoise(z + rise), roll, pitch, yaw] };
 }
 
-/** A number without the dust of its calculation. */
-export function tidy(value: number): number {
+/** Rounds away floating-point errors. */
+export function roundNoise(value: number): number {
   return Math.round(value * 1e9) / 1e9;
 }
 
-/** The factors that stretch the drawing of a shape along x, y and z for another size. */
-export function stretch(shape: Shape, before: readonly number[], after: readonly number[]): [number, number, number] {
+/** Returns the factors by which to stretch the drawing of a shape along x, y and z for another size. */
+export function stretchFactors(shape: Shape, before: readonly number[], after: readonly number[]): [number, number, number] {
   const by = (i: number): number => ((before[i] ?? 0) > 0 ? (after[i] ?? 0) / (before[i] ?? 1) : 1);
   if (shape === "sphere") return [by(0), by(0), by(0)];
   return shape === "cylinder" ? [by(0), by(0), by(1)] : [by(0), by(1), by(2)];
@@ -90,6 +90,6 @@ export function isShape(kind: NewKind): kind is Shape {
   return kind === "wall" || kind in SIZES;
 }
 
-function strongest(...factors: number[]): number {
-  return factors.reduce((best, each) => (Math.abs(Math.log(Math.abs(each))) > Math.abs(Math.log(Math.abs(best))) ? each : best), 1);
+function largestFactor(...factors: number[]): number {
+  return factors.reduce((best, factor) => (Math.abs(Math.log(Math.abs(factor))) > Math.abs(Math.log(Math.abs(best))) ? factor : best), 1);
 }

@@ -4,23 +4,23 @@ import type { TextStorage } from "../../storage";
 const KEY = "linkwright.snapping";
 const DEGREE = Math.PI / 180;
 
-/** Grids to choose from, m and degrees. */
+/** The steps to choose from, m and degrees. */
 export const LENGTH_STEPS = [0.01, 0.05, 0.1, 0.25, 0.5, 1] as const;
 export const ANGLE_STEPS = [1, 5, 15, 30, 45, 90] as const;
 
-/** The nearest multiple of a step, without the dust of binary fractions. */
-export function snapped(value: number, step: number): number {
+/** Rounds to the nearest multiple of a step, without floating-point noise. */
+export function snap(value: number, step: number): number {
   return step > 0 ? Number((Math.round(value / step) * step).toPrecision(12)) : value;
 }
 
-/** The grid, if any, for moving, turning and scaling objects; remembered by the browser. */
+/** The grid for moving, rotating and scaling, stored by the browser. */
 export class Snapping {
   readonly changed = new Signal();
   private on: boolean;
   private length: number;
   private angle = 15;
 
-  /** `key`: the key that it is remembered under; `usual`: the default. */
+  /** `key` is the storage key, `usual` the default. */
   constructor(
     private readonly storage: TextStorage,
     private readonly key = KEY,
@@ -38,7 +38,7 @@ export class Snapping {
 
   set enabled(on: boolean) {
     this.on = on;
-    this.keep();
+    this.store();
   }
 
   /** The step of the grid, m. */
@@ -48,7 +48,7 @@ export class Snapping {
 
   set metres(length: number) {
     this.length = length;
-    this.keep();
+    this.store();
   }
 
   get degrees(): number {
@@ -57,16 +57,16 @@ export class Snapping {
 
   set degrees(angle: number) {
     this.angle = angle;
-    this.keep();
+    this.store();
   }
 
-  /** The current steps, m and rad; 0 without a grid. `inverted` while Ctrl is held. */
+  /** Returns the current steps, m and rad, 0 without a grid; `inverted` while Ctrl is held. */
   steps(inverted: boolean): { length: number; angle: number } {
     const on = this.on !== inverted;
     return { length: on ? this.length : 0, angle: on ? this.angle * DEGREE : 0 };
   }
 
-  private keep(): void {
+  private store(): void {
     this.storage.setItem(this.key, `${this.on ? "on" : "off"} ${this.length} ${this.angle}`);
     this.changed.emit();
   }

@@ -1,10 +1,10 @@
-/** A field of a topic, as users write it: `/joint_states.position[2]`. Names of topics have no dots. */
+/** A field of a topic, written as `/joint_states.position[2]`. Topic names contain no dots. */
 export interface FieldName {
   topic: string;
   path: string;
 }
 
-/** Null if it has no topic or no field. */
+/** Parses a field; returns null if the topic or the field is missing. */
 export function parseField(text: string): FieldName | null {
   const found = /^\s*\/?([^.\s]+)\.(\S+)\s*$/.exec(text);
   return found ? { topic: `/${found[1] ?? ""}`, path: found[2] ?? "" } : null;
@@ -14,7 +14,7 @@ export function fieldText({ topic, path }: FieldName): string {
   return `${topic}.${path}`;
 }
 
-/** The text of a value beside its series: six digits, no more zeros than needed. */
+/** Returns a value with six digits and no trailing zeros, for the legend of a plot. */
 export function valueText(value: number | null): string {
   if (value === null) return "";
   if (!Number.isFinite(value)) return Number.isNaN(value) ? "nan" : value > 0 ? "inf" : "-inf";

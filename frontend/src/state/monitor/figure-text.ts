@@ -1,6 +1,6 @@
 const UNITS = ["B/s", "KB/s", "MB/s", "GB/s"];
 
-/** Bytes a second in a unit that suits, thousands as `ros2 topic bw` counts them. */
+/** Returns bytes per second in a suitable unit, in steps of 1000 like `ros2 topic bw`. */
 export function bandwidthText(bytes: number): string {
   let [value, unit] = [bytes, 0];
   while (value >= 1000 && unit < UNITS.length - 1) {
@@ -11,12 +11,12 @@ export function bandwidthText(bytes: number): string {
   return `${value.toFixed(digits)} ${UNITS[unit] ?? ""}`;
 }
 
-/** Hertz with as many digits as mean something. */
+/** Returns Hz with a sensible number of digits. */
 export function rateText(rate: number): string {
   return rate >= 100 ? rate.toFixed(0) : rate >= 10 ? rate.toFixed(1) : rate.toFixed(2);
 }
 
-/** A time of day with milliseconds; `time` in seconds since the epoch. */
+/** Returns the time of day with milliseconds; `time` in seconds since the epoch. */
 export function clockText(time: number): string {
   const date = new Date(time * 1000);
   const part = (value: number, digits: number): string => String(value).padStart(digits, "0");

@@ -11,13 +11,13 @@ export interface Link {
   to: string;
 }
 
-/** A box with its centre. */
+/** A box with the position of its centre. */
 export interface PlacedBox extends Box {
   x: number;
   y: number;
 }
 
-/** The way of a link: from the edge of one box to that of the other, past those in between. */
+/** The path of a link from the edge of one box to that of the other, around the boxes in between. */
 export interface Route extends Link {
   points: [number, number][];
 }
@@ -34,10 +34,10 @@ const BOX_GAP = 14;
 const DUMMY_HEIGHT = 6;
 const ORDER_SWEEPS = 12;
 const PLACE_SWEEPS = 10;
-/** Half the distance between the two links of boxes that point at each other. */
+/** Half the distance between the two links of boxes that are linked in both directions. */
 const PAIR_OFFSET = 4;
 
-/** A box, or a place where a long link passes a layer. */
+/** A box, or a dummy where a long link passes a layer. */
 interface Vertex {
   box: Box | null;
   layer: number;
@@ -49,17 +49,19 @@ interface Vertex {
 }
 
 /**
- * Places boxes in layers from left to right, so that links go to the right where they can, cross seldom and are short.
+ * Places boxes in layers from left to right, so that links point to the right where possible, rarely cross and are
+ * short.
  *
- * Sugiyama's method: links that would close a cycle are turned round for the time being, each box comes behind those
- * that point at it, long links get a place in each layer they pass, layers are ordered by the middle of the neighbours,
- * and heights are those nearest to the neighbours' that keep the order. Boxes without links go in rows below.
+ * This is Sugiyama's method: links that would close a cycle are reversed temporarily, each box is placed behind those
+ * that link to it, long links get a dummy in each layer that they pass, layers are ordered by the mean position of the
+ * neighbours, and vertical positions are as close to those of the neighbours as the order permits. Boxes without links
+ * are placed in rows below.
  */
-export function layered(boxes: readonly Box[], links: readonly Link[]): Layout {
+export function layOutLayers(boxes: readonly Box[], links: readonly Link[]): Layout {
   const known = new Map(boxes.map((box) => [box.id, box]));
   const proper = links.filter(({ from, to }) => from !== to && known.has(from) && known.has(to));
   const linked = new Set(proper.flatMap(({ from, to }) => [from, to]));
-  const turned = cycleClosers(boxes, proper);
+  const turned = cycleClosingLinks(boxes, proper);
   const forward = proper.map((link) => (turned.has(link) ? { from: link.to, to: link.from } : link));
   const layerOf = layersOf(boxes.filter(({ id }) => linked.has(id)), forward);
   const vertices = new Map<string, Vertex>();
@@ -71,10 +73,10 @@ export function layered(boxes: readonly Box[], links: readonly Link[]): Layout {
     return vertex;
   };
   for (const box of boxes) if (linked.has(box.id)) add(box, layerOf.get(box.id) ?? 0);
-  const chains = forward.map(({ from, to }) => chain(vertices, from, to, add));
-  order(layers);
-  place(layers);
-  const width = spread(layers);
+  const chains = forward.map(({ from, to }) => connectLayers(vertices, from, to, add));
+  orderLayers(layers);
+  placeVertically(layers);
+  const width = placeLayers(layers);
   const result: Layout = { boxes: new Map(), routes: [], width, height: 0 };
   for (const [id, { box, x, y }] of vertices) if (box) result.boxes.set(id, { ...box, id, x, y });
   const pairs = new Set(proper.map(({ from, to }) => `${from}\n${to}`));
@@ -84,12 +86,12 @@ export function layered(boxes: readonly Box[], links: readonly Link[]): Layout {
     result.routes.push({ from: link.from, to: link.to, points: turned.has(link) ? points.reverse() : points });
   });
   shiftToOrigin(result);
-  placeAlone(boxes.filter(({ id }) => !linked.has(id)), result);
+  placeUnlinked(boxes.filter(({ id }) => !linked.has(id)), result);
   return result;
 }
 
-/** The links that lead back to a box on the way to their start, by a search in depth. */
-function cycleClosers(boxes: readonly Box[], links: readonly Link[]): Set<Link> {
+/** Returns the links that close a cycle, by a depth-first search. */
+function cycleClosingLinks(boxes: readonly Box[], links: readonly Link[]): Set<Link> {
   const outgoing = new Map<string, Link[]>();
   const incoming = new Set(links.map(({ to }) => to));
   for (const link of links) outgoing.set(link.from, [...(outgoing.get(link.from) ?? []), link]);
@@ -110,13 +112,13 @@ function cycleClosers(boxes: readonly Box[], links: readonly Link[]): Set<Link> 
       }
     }
   };
-  // Boxes without incoming links come first: paths begin there.
+  // Start at boxes without incoming links, where paths begin.
   const starts = [...boxes].sort((a, b) => Number(incoming.has(a.id)) - Number(incoming.has(b.id)));
   for (const { id } of starts) if (!state.has(id)) visit(id);
   return closers;
 }
 
-/** The layer of each box: behind all boxes that point at it, and as near to its targets as that allows. */
+/** Returns the layer of each box: behind all boxes that link to it, and as close to its targets as that permits. */
 function layersOf(boxes: readonly Box[], links: readonly Link[]): Map<string, number> {
   const layer = new Map(boxes.map(({ id }) => [id, 0]));
   const at = (id: string): number => layer.get(id) ?? 0;
@@ -137,7 +139,7 @@ function layersOf(boxes: readonly Box[], links: readonly Link[]): Map<string, nu
   return layer;
 }
 
-function chain(
+function connectLayers(
   vertices: ReadonlyMap<string, Vertex>,
   from: string,
   to: string,
@@ -157,8 +159,11 @@ function chain(
   return way;
 }
 
-/** Orders each layer by the average place of the neighbours, forth and back, and keeps the order that crosses least. */
-function order(layers: Vertex[][]): void {
+/**
+ * Orders each layer by the mean position of the neighbours, in both directions, and keeps the order with the fewest
+ * crossings.
+ */
+function orderLayers(layers: Vertex[][]): void {
   let best = layers.map((layer) => [...layer]);
   let fewest = crossings(layers);
   for (let sweep = 0; sweep < ORDER_SWEEPS && fewest > 0; sweep++) {
@@ -200,8 +205,8 @@ function crossings(layers: readonly (readonly Vertex[])[]): number {
   return count;
 }
 
-/** Heights: each as near to the middle of its neighbours as the order and the gaps allow. */
-function place(layers: readonly (readonly Vertex[])[]): void {
+/** Computes vertical positions, each as close to the mean of its neighbours as the order and the gaps permit. */
+function placeVertically(layers: readonly (readonly Vertex[])[]): void {
   for (const layer of layers) {
     let y = 0;
     for (const vertex of layer) {
@@ -227,8 +232,8 @@ function place(layers: readonly (readonly Vertex[])[]): void {
   }
 }
 
-/** Gives each layer its place from left to right; all of the width. */
-function spread(layers: readonly (readonly Vertex[])[]): number {
+/** Sets the horizontal position of each layer, and returns the total width. */
+function placeLayers(layers: readonly (readonly Vertex[])[]): number {
   let x = 0;
   for (const layer of layers) {
     const width = Math.max(0, ...layer.map((vertex) => vertex.box?.width ?? 0));
@@ -255,8 +260,8 @@ function shiftToOrigin(layout: Layout): void {
   layout.height = Math.max(...boxes.map(({ y, height }) => y + height / 2), ...points.map(([, y]) => y));
 }
 
-/** Boxes without links, in rows below the rest. */
-function placeAlone(boxes: readonly Box[], layout: Layout): void {
+/** Places boxes without links in rows below the others. */
+function placeUnlinked(boxes: readonly Box[], layout: Layout): void {
   const most = Math.max(layout.width, 640);
   let [x, y, rowHeight] = [0, layout.height > 0 ? layout.height + 2 * BOX_GAP : 0, 0];
   for (const box of boxes) {

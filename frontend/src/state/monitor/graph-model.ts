@@ -3,12 +3,12 @@ import type { GraphTopic, NodeGraph } from "../../protocol";
 export type GraphMode = "nodes" | "active" | "all";
 
 export interface GraphOptions {
-  /** Nodes only, topics that connect nodes, or all topics. */
+  /** Show nodes only, topics that connect nodes, or all topics. */
   mode: GraphMode;
-  /** Whether topics are shown that every node has. */
+  /** Whether to show topics that every node has. */
   debug: boolean;
   tf: boolean;
-  /** Whether the nodes of a namespace are one vertex, unless its group is opened. */
+  /** Whether the nodes of a namespace are one vertex, unless its group is open. */
   grouped: boolean;
   openGroups: ReadonlySet<string>;
 }
@@ -17,14 +17,14 @@ export interface GraphVertex {
   id: string;
   kind: "node" | "topic" | "action" | "group";
   label: string;
-  /** Of a group: the number of its nodes. */
+  /** The number of nodes in a group. */
   count: number;
 }
 
 interface GraphEdge {
   from: string;
   to: string;
-  /** The topics of the edge, if they are not vertices. */
+  /** The topics of the edge, if topics are not vertices. */
   topics: string[];
 }
 
@@ -38,7 +38,7 @@ const DEBUG_NODES = /(^|\/)_?(ros2cli|rqt_gui)[^/]*$/;
 const TF_TOPICS = new Set(["/tf", "/tf_static"]);
 const ACTION = "/_action/";
 
-/** The vertices and edges to draw for a graph, each in the order of their names. */
+/** Returns the vertices and edges to draw for a graph. */
 export function drawnGraph(graph: NodeGraph, options: GraphOptions): DrawnGraph {
   const vertices = new Map<string, GraphVertex>();
   const nodes = graph.nodes.filter((name) => options.debug || !DEBUG_NODES.test(name));
@@ -76,7 +76,7 @@ export function drawnGraph(graph: NodeGraph, options: GraphOptions): DrawnGraph 
   return { vertices: [...vertices.values()], edges: [...edges.values()] };
 }
 
-/** Each publisher with each other subscriber. */
+/** Returns all pairs of a publisher and another subscriber. */
 function pairsOf(publishers: readonly string[], subscribers: readonly string[]): (readonly [string, string])[] {
   return publishers.flatMap((from) => subscribers.filter((to) => to !== from).map((to) => [from, to] as const));
 }
@@ -85,7 +85,7 @@ interface JoinedTopic extends Pick<GraphTopic, "name" | "publishers" | "subscrib
   action: boolean;
 }
 
-/** The topics that pass the filters; the topics of an action are one. */
+/** Returns the topics that pass the filters; the topics of an action are merged into one. */
 function topicsOf(graph: NodeGraph, options: GraphOptions): JoinedTopic[] {
   const joined = new Map<string, JoinedTopic>();
   for (const { name, publishers, subscribers } of graph.topics) {

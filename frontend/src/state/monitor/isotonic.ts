@@ -1,4 +1,7 @@
-/** The values that never decrease and are nearest to some others (least squares): neighbours in disorder are averaged. */
+/**
+ * Returns the non-decreasing values closest to the given ones (least squares): neighbours in the wrong order are
+ * averaged.
+ */
 export function isotonic(values: readonly number[]): number[] {
   const blocks: { sum: number; count: number }[] = [];
   for (const value of values) {

@@ -2,41 +2,44 @@ import type { Connection } from "../../connection/connection";
 import type { LogLine } from "../../protocol";
 import { Signal } from "../../signal";
 
-/** Records that are kept; the oldest go, a tenth at a time. */
-export const MOST_LINES = 20_000;
+/** The maximum number of records; beyond it, the oldest tenth is dropped. */
+export const MAX_LINES = 20_000;
 const SAVED_KEY = "linkwright.log-levels";
 
 export const LEVELS = [10, 20, 30, 40, 50] as const;
 export type Level = (typeof LEVELS)[number];
 
-/** The level whose colour and name a record has: rcl_interfaces/msg/Log knows numbers in between too. */
+/** Returns the level whose colour and name a record has: rcl_interfaces/msg/Log permits values in between. */
 export function levelOf(line: Pick<LogLine, "level">): Level {
   return LEVELS.findLast((level) => line.level >= level) ?? 10;
 }
 
-/** A record as it is copied: as on the console. */
+/** Returns a record as text for copying, in the format of the console. */
 export function lineText(line: LogLine, levelName: string): string {
   const place = line.file === "" ? "" : ` (${line.file}:${line.line})`;
   return `[${levelName}] [${line.time.toFixed(9)}] [${line.node}]: ${line.message}${place}`;
 }
 
-/** The records of /rosout that the page has seen, and those of them that pass the filters. */
+/** The records of /rosout that the page has received, and those that pass the filters. */
 export class LogState {
   /** Records or filters changed. */
   readonly changed = new Signal();
   lines: LogLine[] = [];
   /** The records that pass the filters. */
   shown: LogLine[] = [];
-  /** Records that the server could not send in time. */
+  /** The number of records that the server could not send in time. */
   missed = 0;
   readonly levels: Set<number>;
   paused = false;
   private node = "";
   private text = "";
-  private waiting: LogLine[] = [];
+  private pending: LogLine[] = [];
   private opened = false;
-  /** The next records are the first of a connection: the server begins with the past, and the page may have some of it. */
-  private begins = true;
+  /**
+   * Whether the next records are the first of a connection: the server starts with past records, some of which the page
+   * may have.
+   */
+  private isFirstBatch = true;
 
   constructor(
     private readonly connection: Connection,
@@ -45,17 +48,17 @@ export class LogState {
     const saved = storage.getItem(SAVED_KEY);
     this.levels = new Set(saved === null ? LEVELS : saved.split(",").map(Number));
     connection.on("hello", () => {
-      this.begins = true;
-      if (this.opened) this.announce();
+      this.isFirstBatch = true;
+      if (this.opened) this.sendWatch();
     });
     connection.on("log_lines", ({ lines, missed }) => {
       this.missed += missed;
-      this.take(this.begins ? this.unknownOf(lines) : lines);
-      this.begins = false;
+      this.add(this.isFirstBatch ? this.unknownOf(lines) : lines);
+      this.isFirstBatch = false;
     });
   }
 
-  /** The nodes that have written, sorted. */
+  /** The nodes that have written records, sorted. */
   get nodes(): string[] {
     return [...new Set(this.lines.map((line) => line.node))].sort();
   }
@@ -63,7 +66,7 @@ export class LogState {
   setOpen(open: boolean): void {
     if (open === this.opened) return;
     this.opened = open;
-    this.announce();
+    this.sendWatch();
   }
 
   setLevel(level: number, shown: boolean): void {
@@ -83,36 +86,36 @@ export class LogState {
     this.filter();
   }
 
-  /** Records that arrive during a pause are shown when it ends. */
+  /** Pauses or resumes; records that arrive during a pause are shown on resuming. */
   setPaused(paused: boolean): void {
     this.paused = paused;
-    const { waiting } = this;
-    this.waiting = [];
-    if (!paused) this.take(waiting);
+    const { pending } = this;
+    this.pending = [];
+    if (!paused) this.add(pending);
     this.changed.emit();
   }
 
   clear(): void {
     this.lines = [];
-    this.waiting = [];
+    this.pending = [];
     this.missed = 0;
     this.filter();
   }
 
   private unknownOf(lines: readonly LogLine[]): LogLine[] {
-    const known = new Set([...this.lines, ...this.waiting].map(keyOf));
+    const known = new Set([...this.lines, ...this.pending].map(keyOf));
     return lines.filter((line) => !known.has(keyOf(line)));
   }
 
-  private take(lines: readonly LogLine[]): void {
+  private add(lines: readonly LogLine[]): void {
     if (this.paused) {
-      this.waiting.push(...lines);
-      if (this.waiting.length > MOST_LINES) this.waiting = this.waiting.slice(-MOST_LINES);
+      this.pending.push(...lines);
+      if (this.pending.length > MAX_LINES) this.pending = this.pending.slice(-MAX_LINES);
       return;
     }
     this.lines.push(...lines);
-    if (this.lines.length > MOST_LINES) {
-      this.lines = this.lines.slice(-MOST_LINES * 0.9);
+    if (this.lines.length > MAX_LINES) {
+      this.lines = this.lines.slice(-MAX_LINES * 0.9);
       this.filter();
       return;
     }
@@ -131,7 +134,7 @@ export class LogState {
     return this.text === "" || line.message.toLowerCase().includes(this.text) || line.node.toLowerCase().includes(this.text);
   }
 
-  private announce(): void {
+  private sendWatch(): void {
     this.connection.send({ type: "watch_log", watched: this.opened });
   }
 }

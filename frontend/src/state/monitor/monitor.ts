@@ -29,7 +29,7 @@ export class MonitorState {
     this.navigation = new NavigationState(connection);
   }
 
-  /** For `window.linkwright`. */
+  /** Returns the state of all live panels for `window.linkwright`. */
   inspect(): object {
     const { plots, topics, graph, parameters, log, teleop } = this;
     return {

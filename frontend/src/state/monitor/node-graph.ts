@@ -2,7 +2,7 @@ import type { Connection } from "../../connection/connection";
 import type { NodeGraph } from "../../protocol";
 import { Signal } from "../../signal";
 
-/** The nodes and topics of the graph while a view shows them. */
+/** The nodes and topics of the graph, up to date while a view shows them. */
 export class NodeGraphState {
   readonly changed = new Signal();
   graph: NodeGraph = { type: "node_graph", nodes: [], topics: [] };
@@ -10,7 +10,7 @@ export class NodeGraphState {
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
-      if (this.watched) this.announce();
+      if (this.watched) this.sendWatch();
     });
     connection.on("node_graph", (graph) => {
       this.graph = graph;
@@ -21,10 +21,10 @@ export class NodeGraphState {
   watch(watched: boolean): void {
     if (watched === this.watched) return;
     this.watched = watched;
-    this.announce();
+    this.sendWatch();
   }
 
-  private announce(): void {
+  private sendWatch(): void {
     this.connection.send({ type: "watch_node_graph", watched: this.watched });
   }
 }

@@ -1,13 +1,13 @@
 import type { ParameterKind } from "../../protocol";
 
-/** A parameter's values as one text: alone, or as a list in brackets, with texts in quotes. */
+/** Returns a parameter's value as text: arrays as a list in brackets, with strings in quotes. */
 export function parameterText(kind: ParameterKind, values: readonly string[]): string {
   if (!kind.endsWith("_array")) return values[0] ?? "";
   const shown = kind === "string_array" ? values.map((value) => JSON.stringify(value)) : values;
   return `[${shown.join(", ")}]`;
 }
 
-/** The values in a text, with optional brackets and quotes; null when quotes are not closed. */
+/** Parses a text into values, with optional brackets and quotes; returns null if quotes are not closed. */
 export function parameterValues(kind: ParameterKind, text: string): string[] | null {
   if (!kind.endsWith("_array")) return [text];
   const inner = text.trim().replace(/^\[/, "").replace(/\]$/, "").trim();

@@ -2,21 +2,21 @@ import type { Connection } from "../../connection/connection";
 import type { NodeParameters, ParameterDump, ParameterKind, ParameterResult } from "../../protocol";
 import { Signal } from "../../signal";
 
-/** The nodes that have parameters, and the parameters of the one that is chosen. */
+/** The nodes with parameters, and the parameters of the chosen node. */
 export class ParametersState {
   readonly nodesChanged = new Signal();
   readonly changed = new Signal();
-  readonly resultCame = new Signal<ParameterResult>();
-  readonly dumpCame = new Signal<ParameterDump>();
+  readonly resultArrived = new Signal<ParameterResult>();
+  readonly dumpArrived = new Signal<ParameterDump>();
   nodes: readonly string[] = [];
   node: string | null = null;
-  /** Null until the node has answered. */
+  /** The parameters of the chosen node; null until the node has answered. */
   parameters: NodeParameters | null = null;
   private listed = false;
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
-      if (this.listed) this.announce();
+      if (this.listed) this.sendWatch();
     });
     connection.on("parameter_nodes", ({ nodes }) => {
       this.nodes = nodes;
@@ -28,22 +28,22 @@ export class ParametersState {
       this.changed.emit();
     });
     connection.on("parameter_result", (result) => {
-      if (result.node === this.node) this.resultCame.emit(result);
+      if (result.node === this.node) this.resultArrived.emit(result);
     });
-    connection.on("parameter_dump", (dump) => this.dumpCame.emit(dump));
+    connection.on("parameter_dump", (dump) => this.dumpArrived.emit(dump));
   }
 
   watch(watched: boolean): void {
     if (watched === this.listed) return;
     this.listed = watched;
-    this.announce();
+    this.sendWatch();
   }
 
   choose(node: string | null): void {
     this.node = node;
     this.parameters = null;
     this.changed.emit();
-    this.announce();
+    this.sendWatch();
   }
 
   set(name: string, kind: ParameterKind, values: string[]): void {
@@ -54,7 +54,7 @@ export class ParametersState {
     if (this.node !== null) this.connection.send({ type: "dump_parameters", node: this.node });
   }
 
-  private announce(): void {
+  private sendWatch(): void {
     const node = this.listed ? this.node : null;
     this.connection.send({ type: "watch_parameters", listed: this.listed, node });
   }

@@ -1,14 +1,14 @@
 import type { SeriesBuffer, TimeSource } from "./series-buffer";
 
-/** Times, and for each series a value for each of them: undefined where it has none, null where the line breaks. */
+/** Times, and a column of values for each series: undefined for no value, null where the line breaks. */
 export type PlotTable = [number[], ...(number | null | undefined)[][]];
 
 /**
- * The samples of some series between two times, as uPlot draws them.
+ * Returns the samples of several series between two times, in uPlot's format.
  *
- * Where there are more samples than the plot has columns of pixels, each column shows the least and the greatest value
- * in it: the plot looks the same, and takes as long for a thousand samples a second as for ten. One sample beyond each
- * side is taken along, so that lines reach the edges.
+ * Where there are more samples than columns of pixels, each column shows its minimum and maximum: the plot looks the
+ * same, and a thousand samples a second take no longer than ten. One sample beyond each side is included so that lines
+ * reach the edges.
  */
 export function plotTable(
   series: readonly SeriesBuffer[],
@@ -22,14 +22,17 @@ export function plotTable(
     return [Math.max(0, buffer.indexFrom(source, from) - 1), end] as const;
   });
   const total = spans.reduce((sum, [start, end]) => sum + end - start, 0);
-  if (total <= 2 * columns) return exact(series, source, spans);
-  // Columns stay where they are while the window moves, or the line would flicker. Differences of points in time are not
-  // exact, hence the rounding.
+  if (total <= 2 * columns) return allSamples(series, source, spans);
+  // Columns must not shift while the window moves, or the line would flicker. The width is rounded, because differences
+  // of times are not exact.
   const width = Number(((to - from) / columns).toPrecision(5));
-  return condensed(series, source, spans, Math.floor(from / width) * width, width, columns + 1);
+  return minMaxSamples(series, source, spans, Math.floor(from / width) * width, width, columns + 1);
 }
 
-/** The samples of some series between two times as CSV: a row for each time, blanks where a series has no value. */
+/**
+ * Returns the samples of several series between two times as CSV: one row for each time, empty cells for series without
+ * a value.
+ */
 export function csvText(
   names: readonly string[],
   series: readonly SeriesBuffer[],
@@ -43,17 +46,17 @@ export function csvText(
     while (end < times.length && times[end] === to) end++;
     return [buffer.indexFrom(source, from), end] as const;
   });
-  const [times, ...columns] = exact(series, source, spans);
+  const [times, ...columns] = allSamples(series, source, spans);
   const rows = times.map((time, row) => {
     const cells = columns.map((column) => String(column[row] ?? ""));
     return [time.toFixed(6), ...cells].join(",");
   });
-  return ["time", ...names.map(quoted)].join(",") + "\n" + rows.map((row) => row + "\n").join("");
+  return ["time", ...names.map(csvQuoted)].join(",") + "\n" + rows.map((row) => row + "\n").join("");
 }
 
 type Spans = readonly (readonly [number, number])[];
 
-function exact(series: readonly SeriesBuffer[], source: TimeSource, spans: Spans): PlotTable {
+function allSamples(series: readonly SeriesBuffer[], source: TimeSource, spans: Spans): PlotTable {
   const all = new Set<number>();
   spans.forEach(([start, end], index) => {
     for (const time of series[index]?.times(source).subarray(start, end) ?? []) all.add(time);
@@ -64,13 +67,13 @@ function exact(series: readonly SeriesBuffer[], source: TimeSource, spans: Spans
     const column = new Array<number | null | undefined>(times.length);
     const [start, end] = spans[index] ?? [0, 0];
     const [found, values] = [buffer.times(source), buffer.values];
-    for (let at = start; at < end; at++) column[rows.get(found[at] ?? 0) ?? 0] = drawn(values[at]);
+    for (let at = start; at < end; at++) column[rows.get(found[at] ?? 0) ?? 0] = drawnValue(values[at]);
     return column;
   });
   return [times, ...columns];
 }
 
-function condensed(
+function minMaxSamples(
   series: readonly SeriesBuffer[],
   source: TimeSource,
   spans: Spans,
@@ -78,7 +81,7 @@ function condensed(
   width: number,
   count: number,
 ): PlotTable {
-  // Two rows a column, and a column at each side for the samples beyond.
+  // Two rows for each column, and one more column on each side for the samples beyond.
   const times = Array.from({ length: 2 * (count + 2) }, (_, row) => from + ((row >> 1) - 1 + (row % 2 ? 0.75 : 0.25)) * width);
   const columns = series.map((buffer, index) => {
     const column = new Array<number | null | undefined>(times.length);
@@ -94,8 +97,8 @@ function condensed(
         if (!(value >= (values[least] ?? NaN))) least = next;
         if (!(value <= (values[greatest] ?? NaN))) greatest = next;
       }
-      column[2 * bucket] = drawn(values[Math.min(least, greatest)]);
-      if (least !== greatest) column[2 * bucket + 1] = drawn(values[Math.max(least, greatest)]);
+      column[2 * bucket] = drawnValue(values[Math.min(least, greatest)]);
+      if (least !== greatest) column[2 * bucket + 1] = drawnValue(values[Math.max(least, greatest)]);
       at = next;
     }
     return column;
@@ -107,10 +110,10 @@ function bucketOf(time: number, from: number, width: number, count: number): num
   return Math.min(count + 1, Math.max(0, Math.floor((time - from) / width) + 1));
 }
 
-function drawn(value: number | undefined): number | null {
+function drawnValue(value: number | undefined): number | null {
   return value === undefined || !Number.isFinite(value) ? null : value;
 }
 
-function quoted(name: string): string {
+function csvQuoted(name: string): string {
   return /[",\n]/.test(name) ? `"${name.replaceAll('"', '""')}"` : name;
 }

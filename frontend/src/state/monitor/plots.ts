@@ -5,15 +5,15 @@ import { Signal } from "../../signal";
 import { fieldText, type FieldName } from "./field-text";
 import { SeriesBuffer, type TimeSource } from "./series-buffer";
 
-/** One line of a plot. */
+/** A line of a plot. */
 export interface Series extends FieldName {
   readonly id: number;
   readonly buffer: SeriesBuffer;
-  /** Why there are no values; null when there are, or when they are waited for. */
+  /** Why there are no values; null if there are, or if they are pending. */
   error: string | null;
 }
 
-/** One diagram; a fixed range of values, or null for the range of the shown samples. */
+/** A plot; `range` is a fixed range of values, or null to fit the samples shown. */
 export interface Plot {
   readonly id: number;
   readonly series: Series[];
@@ -29,20 +29,20 @@ interface Saved {
 const SAVED_KEY = "linkwright.plots.1";
 const FIRST_SECONDS = 30;
 
-/** The plots and their samples. The server sends samples while the panel is open, and only those. */
+/** The plots and their samples, which the server sends only while the panel is open. */
 export class PlotsState {
   /** Plots, series, errors or settings changed. */
   readonly changed = new Signal();
   /** Samples arrived, or the window moved. */
   readonly moved = new Signal();
-  readonly fieldsTold = new Signal<TopicFields>();
+  readonly fieldsArrived = new Signal<TopicFields>();
   readonly plots: Plot[] = [];
-  /** Length of the window, seconds. */
+  /** The length of the window, s. */
   seconds = FIRST_SECONDS;
   source: TimeSource = "received";
-  private heldAt: readonly [number, number] | null = null;
+  private frozenAt: readonly [number, number] | null = null;
   private opened = false;
-  private present = true;
+  private isLive = true;
   private nextId = 1;
 
   constructor(
@@ -51,7 +51,7 @@ export class PlotsState {
   ) {
     this.restore();
     connection.on("hello", () => {
-      if (this.opened) this.announce();
+      if (this.opened) this.sendWatch();
     });
     connection.on("series_states", ({ states }) => {
       for (const { id, error } of states) {
@@ -60,13 +60,13 @@ export class PlotsState {
       }
       this.changed.emit();
     });
-    connection.on("topic_fields", (fields) => this.fieldsTold.emit(fields));
-    connection.on("playhead", ({ live }) => (this.present = live));
-    // The plotted samples are from another time than the one shown now.
+    connection.on("topic_fields", (fields) => this.fieldsArrived.emit(fields));
+    connection.on("playhead", ({ live }) => (this.isLive = live));
+    // The samples are from another time than the one shown now.
     connection.on("time_reset", () => {
-      if (!this.present) this.clear();
+      if (!this.isLive) this.clear();
     });
-    connection.samples.on((samples) => this.take(samples));
+    connection.samples.on((samples) => this.addSamples(samples));
   }
 
   get series(): Series[] {
@@ -74,97 +74,97 @@ export class PlotsState {
   }
 
   get paused(): boolean {
-    return this.heldAt !== null;
+    return this.frozenAt !== null;
   }
 
-  /** The time span of the plots, seconds; null while there is nothing to show. */
+  /** The time span of the plots, s; null if there is nothing to show. */
   get window(): readonly [number, number] | null {
-    if (this.heldAt) return this.heldAt;
+    if (this.frozenAt) return this.frozenAt;
     const times = this.series.map((each) => each.buffer.latest(this.source)).filter((time) => time !== null);
     if (times.length === 0) return null;
     const to = Math.max(...times);
     return [to - this.seconds, to];
   }
 
-  /** The panel was opened or closed. */
+  /** Starts or stops receiving samples, when the panel is opened or closed. */
   setOpen(open: boolean): void {
     this.opened = open;
-    this.announce();
+    this.sendWatch();
   }
 
   addPlot(): Plot {
     const plot = { id: this.nextId++, series: [], range: null };
     this.plots.push(plot);
-    this.edited();
+    this.store();
     return plot;
   }
 
   removePlot(plot: Plot): void {
     this.plots.splice(this.plots.indexOf(plot), 1);
-    this.edited();
+    this.store();
   }
 
   addSeries(plot: Plot, field: FieldName): void {
     if (plot.series.some((each) => fieldText(each) === fieldText(field))) return;
     plot.series.push({ ...field, id: this.nextId++, buffer: new SeriesBuffer(), error: null });
-    this.edited();
+    this.store();
   }
 
   removeSeries(plot: Plot, series: Series): void {
     plot.series.splice(plot.series.indexOf(series), 1);
-    this.edited();
+    this.store();
   }
 
   setRange(plot: Plot, range: readonly [number, number] | null): void {
     plot.range = range;
-    this.edited();
+    this.store();
   }
 
   setSeconds(seconds: number): void {
     this.seconds = seconds;
-    this.heldAt = null;
-    this.edited();
+    this.frozenAt = null;
+    this.store();
   }
 
   setSource(source: TimeSource): void {
     this.source = source;
-    this.heldAt = null;
-    this.edited();
+    this.frozenAt = null;
+    this.store();
   }
 
-  /** Freezes the plot; further samples are still received. */
+  /** Freezes or resumes the plots; samples are received in both cases. */
   setPaused(paused: boolean): void {
-    this.heldAt = paused ? this.window : null;
+    this.frozenAt = paused ? this.window : null;
     this.changed.emit();
     this.moved.emit();
   }
 
-  /** Freezes the plot at a part of it. */
-  hold(from: number, to: number): void {
-    this.heldAt = [from, to];
+  /** Freezes the plots at a time span. */
+  freezeAt(from: number, to: number): void {
+    this.frozenAt = [from, to];
     this.changed.emit();
     this.moved.emit();
   }
 
   clear(): void {
     for (const { buffer } of this.series) buffer.clear();
-    this.heldAt = null;
+    this.frozenAt = null;
     this.changed.emit();
     this.moved.emit();
   }
 
-  /** Requests the fields of a topic that can be plotted; null when the answer is no longer needed. */
-  askFields(topic: string | null): void {
+  /** Requests the fields of a topic that can be plotted; null cancels the request. */
+  requestFields(topic: string | null): void {
     this.connection.send({ type: "ask_fields", topic });
   }
 
-  private take(samples: readonly SeriesSamples[]): void {
+  private addSamples(samples: readonly SeriesSamples[]): void {
     const series = new Map(this.series.map((each) => [each.id, each]));
     for (const { id, received, stamps, values } of samples) series.get(id)?.buffer.append(received, stamps, values);
     if (!this.paused) this.moved.emit();
   }
 
-  private edited(): void {
+  private store(): void {
     const saved: Saved = {
       seconds: this.seconds,
       source: this.source,
@@ -174,7 +174,7 @@ export class PlotsState {
       })),
     };
     this.storage.setItem(SAVED_KEY, JSON.stringify(saved));
-    if (this.opened) this.announce();
+    if (this.opened) this.sendWatch();
     this.changed.emit();
     this.moved.emit();
   }
@@ -185,24 +185,24 @@ export class PlotsState {
     try {
       const saved = JSON.parse(text) as Saved;
       for (const { series, range } of saved.plots) {
-        const made = series.map(({ topic, path }) => ({
+        const restored = series.map(({ topic, path }) => ({
           topic,
           path,
           id: this.nextId++,
           buffer: new SeriesBuffer(),
           error: null,
         }));
-        this.plots.push({ id: this.nextId++, series: made, range });
+        this.plots.push({ id: this.nextId++, series: restored, range });
       }
       this.seconds = saved.seconds;
       this.source = saved.source;
     } catch {
-      // Plots of another version of the page: start with none.
+      // The stored plots are from another version of the page: start without any.
       this.plots.length = 0;
     }
   }
 
-  private announce(): void {
+  private sendWatch(): void {
     const series = this.opened ? this.series.map(({ id, topic, path }) => ({ id, topic, path })) : [];
     this.connection.send({ type: "watch_series", series, seconds: this.seconds });
   }

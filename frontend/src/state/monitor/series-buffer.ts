@@ -1,20 +1,20 @@
-/** The time at which a sample is plotted. */
+/** The kind of time at which samples are plotted. */
 export type TimeSource = "received" | "stamp";
 
 const FIRST_CAPACITY = 1024;
-/** Ten minutes of a topic of 1 kHz. */
-const MOST_SAMPLES = 600_000;
-/** If stamps go back by more than this, they started over: simulated time was reset, or a recording starts over. */
+/** The maximum number of samples: ten minutes at 1 kHz. */
+const MAX_SAMPLES = 600_000;
+/** Stamps that go back by more than this started over: simulated time was reset, or a recording restarted. */
 const RESET_SECONDS = 1;
 
-/** The samples of one series, the newest last; the oldest go when there are too many. */
+/** The samples of a series, the newest last; the oldest are dropped when there are too many. */
 export class SeriesBuffer {
   private received = new Float64Array(FIRST_CAPACITY);
   private stamps = new Float64Array(FIRST_CAPACITY);
   private numbers = new Float64Array(FIRST_CAPACITY);
   private count = 0;
 
-  constructor(private readonly most = MOST_SAMPLES) {}
+  constructor(private readonly most = MAX_SAMPLES) {}
 
   get length(): number {
     return this.count;
@@ -24,12 +24,12 @@ export class SeriesBuffer {
     return this.numbers.subarray(0, this.count);
   }
 
-  /** The times of the samples, seconds; without a header, the time of reception replaces the stamp. */
+  /** Returns the times of the samples, s; the time of receipt replaces the stamp of messages without a header. */
   times(source: TimeSource): Float64Array {
     return (source === "stamp" ? this.stamps : this.received).subarray(0, this.count);
   }
 
-  /** The newest time, seconds; null while there are no samples. */
+  /** Returns the newest time, s; null if there are no samples. */
   latest(source: TimeSource): number | null {
     return this.times(source)[this.count - 1] ?? null;
   }
@@ -44,7 +44,7 @@ export class SeriesBuffer {
       const time = received[index] ?? 0;
       const header = stamps[index] ?? NaN;
       const stamp = Number.isNaN(header) ? time : header;
-      // Samples that were received before arrive again: of another time of a recording, with earlier samples.
+      // Samples arrive a second time after a jump to another time of a recording, with samples from before it.
       if (this.count > 0 && time < (this.received[this.count - 1] ?? 0)) this.count = this.indexFrom("received", time);
       if (this.count > 0 && stamp < (this.stamps[this.count - 1] ?? 0) - RESET_SECONDS) this.count = 0;
       this.received[this.count] = time;
@@ -58,7 +58,7 @@ export class SeriesBuffer {
     this.count = 0;
   }
 
-  /** Index of the first sample that is not before a time. */
+  /** Returns the index of the first sample at or after a time. */
   indexFrom(source: TimeSource, time: number): number {
     const times = this.times(source);
     let low = 0;
@@ -75,20 +75,20 @@ export class SeriesBuffer {
     const needed = this.count + more;
     if (needed <= this.numbers.length) return;
     if (needed > this.most) {
-      // Half is dropped at once, so that this is rare.
-      const kept = Math.min(this.count, Math.max(0, (this.most >> 1) - more));
-      for (const array of [this.received, this.stamps, this.numbers]) array.copyWithin(0, this.count - kept, this.count);
-      this.count = kept;
-      if (kept + more <= this.numbers.length) return;
+      // Drop half of them, so that this happens rarely.
+      const remaining = Math.min(this.count, Math.max(0, (this.most >> 1) - more));
+      for (const array of [this.received, this.stamps, this.numbers]) array.copyWithin(0, this.count - remaining, this.count);
+      this.count = remaining;
+      if (remaining + more <= this.numbers.length) return;
     }
     const capacity = Math.max(this.count + more, Math.min(this.most, this.numbers.length * 2));
-    this.received = grown(this.received, capacity);
-    this.stamps = grown(this.stamps, capacity);
-    this.numbers = grown(this.numbers, capacity);
+    this.received = resized(this.received, capacity);
+    this.stamps = resized(this.stamps, capacity);
+    this.numbers = resized(this.numbers, capacity);
   }
 }
 
-function grown(array: Float64Array, capacity: number): Float64Array<ArrayBuffer> {
+function resized(array: Float64Array, capacity: number): Float64Array<ArrayBuffer> {
   const larger = new Float64Array(capacity);
   larger.set(array);
   return larger;

@@ -1,4 +1,4 @@
-/** Directions of motion, each -1 to 1: forward, left and up, and turning to the left. */
+/** A direction of motion, components from -1 to 1: forward, left, up, and turning left. */
 export interface Motion {
   x: number;
   y: number;
@@ -10,7 +10,7 @@ export const STILL: Motion = { x: 0, y: 0, z: 0, turn: 0 };
 
 const motion = (x: number, turn = 0, y = 0, z = 0): Motion => ({ x, y, z, turn });
 
-/** teleop_twist_keyboard's keys, the arrows, and WASD. With Shift they move to the side instead of turning. */
+/** The keys of teleop_twist_keyboard, the arrow keys, and WASD. With Shift they move sideways instead of turning. */
 const KEYS: Readonly<Record<string, Motion>> = {
   i: motion(1),
   o: motion(1, -1),
@@ -46,13 +46,13 @@ const KEYS: Readonly<Record<string, Motion>> = {
 
 const SIDEWAYS: Readonly<Record<string, Motion>> = { ArrowLeft: motion(0, 0, 1), ArrowRight: motion(0, 0, -1) };
 
-/** The motion of a key; null for other keys. */
+/** Returns the motion of a key; null for other keys. */
 export function motionOfKey(key: string, shift: boolean): Motion | null {
   return (shift ? SIDEWAYS[key] : undefined) ?? KEYS[key] ?? null;
 }
 
-/** Several motions at once. */
-export function together(motions: Iterable<Motion>): Motion {
+/** Returns the sum of several motions, clamped to -1 to 1. */
+export function sumOf(motions: Iterable<Motion>): Motion {
   const sum = { ...STILL };
   for (const each of motions) {
     sum.x += each.x;
@@ -60,19 +60,19 @@ export function together(motions: Iterable<Motion>): Motion {
     sum.z += each.z;
     sum.turn += each.turn;
   }
-  return { x: unit(sum.x), y: unit(sum.y), z: unit(sum.z), turn: unit(sum.turn) };
+  return { x: clampToUnit(sum.x), y: clampToUnit(sum.y), z: clampToUnit(sum.z), turn: clampToUnit(sum.turn) };
 }
 
 export function isStill(each: Motion): boolean {
   return each.x === 0 && each.y === 0 && each.z === 0 && each.turn === 0;
 }
 
-/** A stick's deflection, -1 to 1, without the play around its middle. */
-export function stick(value: number, play = 0.12): number {
+/** Returns the deflection of a stick, -1 to 1, without the dead zone around its centre. */
+export function stickDeflection(value: number, play = 0.12): number {
   const beyond = Math.abs(value) - play;
-  return beyond <= 0 ? 0 : unit((Math.sign(value) * beyond) / (1 - play));
+  return beyond <= 0 ? 0 : clampToUnit((Math.sign(value) * beyond) / (1 - play));
 }
 
-function unit(value: number): number {
+function clampToUnit(value: number): number {
   return Math.min(1, Math.max(-1, value));
 }

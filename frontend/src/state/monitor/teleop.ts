@@ -1,26 +1,26 @@
 import type { Connection } from "../../connection/connection";
 import type { TeleopState as Aim, TwistKind } from "../../protocol";
 import { Signal } from "../../signal";
-import { isStill, STILL, together, type Motion } from "./teleop-keys";
+import { isStill, STILL, sumOf, type Motion } from "./teleop-keys";
 
 export interface TeleopSettings {
   topic: string;
   kind: TwistKind;
   frameId: string;
-  /** Greatest speed along each axis, m/s. */
+  /** The maximum linear velocity along each axis, m/s. */
   linear: number;
-  /** Greatest speed of turning, rad/s. */
+  /** The maximum angular velocity, rad/s. */
   angular: number;
-  /** Velocities a second while one is held, 10 to 20. */
+  /** The number of velocity messages per second while driving, 10 to 20. */
   rate: number;
   gamepad: boolean;
 }
 
-/** A source of motion: keys and the pad add up, a gamepad is alone. */
+/** A source of motion; the motions of all sources are added. */
 export type Source = "keys" | "pad" | "gamepad";
 
 const SAVED_KEY = "linkwright.teleop.1";
-const FIRST: TeleopSettings = {
+const DEFAULTS: TeleopSettings = {
   topic: "/cmd_vel",
   kind: "auto",
   frameId: "base_link",
@@ -30,12 +30,12 @@ const FIRST: TeleopSettings = {
   gamepad: false,
 };
 
-/** Sends velocities while a motion is held, and zero once it is not. */
+/** Sends velocities while a motion is held, and zero when it ends. */
 export class TeleopState {
-  /** Settings, the aim or the motion changed. */
+  /** Settings, the target or the motion changed. */
   readonly changed = new Signal();
   settings: TeleopSettings;
-  /** The settings that the server applied; null before it reports them. */
+  /** The target that the server uses; null until it has reported one. */
   aim: Aim | null = null;
   private readonly motions = new Map<Source, Motion>();
   private opened = false;
@@ -45,9 +45,9 @@ export class TeleopState {
     private readonly connection: Connection,
     private readonly storage: Pick<Storage, "getItem" | "setItem">,
   ) {
-    this.settings = { ...FIRST, ...read(storage.getItem(SAVED_KEY)) };
+    this.settings = { ...DEFAULTS, ...parseSettings(storage.getItem(SAVED_KEY)) };
     connection.on("hello", () => {
-      if (this.opened) this.announce();
+      if (this.opened) this.sendTarget();
     });
     connection.on("teleop_state", (aim) => {
       this.aim = aim;
@@ -58,9 +58,9 @@ export class TeleopState {
     });
   }
 
-  /** The sum of the inputs that are held now. */
+  /** The sum of the motions of all sources. */
   get motion(): Motion {
-    return together(this.motions.values());
+    return sumOf(this.motions.values());
   }
 
   setOpen(open: boolean): void {
@@ -68,7 +68,7 @@ export class TeleopState {
     if (!open) this.stop();
     this.opened = open;
     this.aim = null;
-    this.announce();
+    this.sendTarget();
   }
 
   configure(change: Partial<TeleopSettings>): void {
@@ -78,12 +78,12 @@ export class TeleopState {
     const { topic, kind, frameId } = this.settings;
     if (topic !== before.topic || kind !== before.kind || frameId !== before.frameId) {
       this.stop();
-      if (this.opened) this.announce();
+      if (this.opened) this.sendTarget();
     }
     this.changed.emit();
   }
 
-  /** Holds the motion of a source from now on. */
+  /** Sets the motion of a source from now on. */
   move(source: Source, motion: Motion): void {
     const before = this.motion;
     if (isStill(motion)) this.motions.delete(source);
@@ -95,7 +95,7 @@ export class TeleopState {
     this.changed.emit();
   }
 
-  /** Lets go of everything. */
+  /** Ends all motions. */
   stop(): void {
     const driven = this.timer !== 0;
     clearTimeout(this.timer);
@@ -106,7 +106,7 @@ export class TeleopState {
     this.changed.emit();
   }
 
-  /** Sends the held motion, and again after the period. */
+  /** Sends the current motion, and repeats that at the rate. */
   private drive(): void {
     this.send(this.motion);
     this.timer = window.setTimeout(() => this.drive(), 1000 / this.settings.rate);
@@ -121,14 +121,14 @@ export class TeleopState {
     });
   }
 
-  private announce(): void {
+  private sendTarget(): void {
     const { topic, kind, frameId } = this.settings;
     const target = this.opened ? { topic, kind, frame_id: frameId } : null;
     this.connection.send({ type: "aim_teleop", target });
   }
 }
 
-function read(text: string | null): Partial<TeleopSettings> {
+function parseSettings(text: string | null): Partial<TeleopSettings> {
   try {
     return text === null ? {} : (JSON.parse(text) as Partial<TeleopSettings>);
   } catch {

@@ -2,13 +2,13 @@ import type { Connection } from "../../connection/connection";
 import type { TopicMessage, TopicRow, TopicTraffic } from "../../protocol";
 import { Signal } from "../../signal";
 
-/** The topics, and the details of those that a view watches. */
+/** The topics, and details of those that a view watches. */
 export class TopicsState {
   readonly listChanged = new Signal();
   readonly figuresChanged = new Signal();
-  readonly messageCame = new Signal<TopicMessage>();
+  readonly messageArrived = new Signal<TopicMessage>();
   topics: readonly TopicRow[] = [];
-  /** Whether the topics arrived since the page was connected. */
+  /** Whether the topics have arrived since the page connected. */
   known = false;
   readonly traffic = new Map<string, TopicTraffic>();
   readonly messages = new Map<string, TopicMessage>();
@@ -19,7 +19,7 @@ export class TopicsState {
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
       this.known = false;
-      if (this.readers.size > 0 || this.measured.length > 0) this.announce();
+      if (this.readers.size > 0 || this.measured.length > 0) this.sendWatch();
     });
     connection.on("topic_list", ({ topics }) => {
       this.topics = topics;
@@ -33,30 +33,30 @@ export class TopicsState {
     connection.on("topic_message", (message) => {
       if (!this.opened.includes(message.topic)) return;
       this.messages.set(message.topic, message);
-      this.messageCame.emit(message);
+      this.messageArrived.emit(message);
     });
   }
 
-  /** Starts or stops keeping the list of topics current for a reader. */
-  list(reader: object, wanted: boolean): void {
+  /** Starts or stops keeping the list of topics up to date for a reader. */
+  watchList(reader: object, wanted: boolean): void {
     const before = this.readers.size;
     if (wanted) this.readers.add(reader);
     else this.readers.delete(reader);
-    if (before === 0 || this.readers.size === 0) this.announce();
+    if (before === 0 || this.readers.size === 0) this.sendWatch();
   }
 
   /** Sets the topics to measure, and those whose last message is requested. */
   watch(measured: Iterable<string>, opened: Iterable<string>): void {
     this.measured = [...measured];
     this.opened = [...opened];
-    const kept = new Set([...this.measured, ...this.opened]);
-    for (const topic of this.traffic.keys()) if (!kept.has(topic)) this.traffic.delete(topic);
+    const watched = new Set([...this.measured, ...this.opened]);
+    for (const topic of this.traffic.keys()) if (!watched.has(topic)) this.traffic.delete(topic);
     for (const topic of this.messages.keys()) if (!this.opened.includes(topic)) this.messages.delete(topic);
-    this.announce();
+    this.sendWatch();
     this.figuresChanged.emit();
   }
 
-  private announce(): void {
+  private sendWatch(): void {
     const { measured, opened } = this;
     this.connection.send({ type: "watch_topics", listed: this.readers.size > 0, measured: [...measured], opened: [...opened] });
   }

@@ -6,7 +6,7 @@ import { ThirdPersonFollowerController, XYOrbitController } from "./xy-orbit";
 
 const ORBIT = new OrbitController();
 
-/** The view classes of RViz. Their properties are declared in `viewer/config/views.py`. */
+/** RViz's view classes, whose properties are declared in `viewer/config/views.py`. */
 const CONTROLLERS: ReadonlyMap<string, ViewController> = new Map<string, ViewController>([
   ["rviz_default_plugins/FPS", new FpsController()],
   ["rviz_default_plugins/Orbit", ORBIT],
@@ -19,7 +19,7 @@ export function controllerOf(cls: string): ViewController {
   return CONTROLLERS.get(cls) ?? ORBIT;
 }
 
-/** `rviz_default_plugins/XYOrbit` as people call it: XYOrbit. */
+/** Returns the name without the package: XYOrbit for `rviz_default_plugins/XYOrbit`. */
 export function shortName(cls: string): string {
   return cls.slice(cls.lastIndexOf("/") + 1);
 }

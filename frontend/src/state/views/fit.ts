@@ -2,33 +2,36 @@ import { FIELD_OF_VIEW, toTarget, type Camera, type Target, type ViewSize } from
 import { add, dot, scale, subtract, type Span, type Vector } from "./vector";
 import { number, type ViewValues } from "./view-controller";
 
-/** Margin around the box. */
+/** The margin around the box, as a factor of its size. */
 const MARGIN = 1.2;
-/** The least near clip distance, and its share of the distance to the box. */
-const NEAREST_CLIP = 0.001;
+/** The minimum near clip distance, and its share of the distance to the box. */
+const MIN_CLIP = 0.001;
 const CLIP_SHARE = 0.25;
 const NEAR_CLIP = "Near Clip Distance";
 
-/** The framing of a box from the side that a camera is at. */
+/** The framing of a box from the direction of a camera. */
 export interface Framing {
-  /** Of the box. */
+  /** The centre of the box. */
   readonly middle: Vector;
-  /** From the middle to the position of a perspective camera, m; 0 for a single point. */
+  /** The distance from the centre to a perspective camera, m; 0 for a single point. */
   readonly distance: number;
-  /** Pixels to a metre of an orthographic camera; 0 for a single point. */
+  /** Pixels per metre of an orthographic camera; 0 for a single point. */
   readonly scale: number;
-  /** Values that keep the near clip distance before all of the box. */
+  /** The values that keep the near clip plane in front of the whole box. */
   readonly clip: ViewValues;
 }
 
-/** All of a box, as large as a canvas of this size has room. `values` are those of the camera. */
+/**
+ * Returns the framing that shows a whole box as large as a canvas of this size permits. `values` are those of the
+ * camera's view.
+ */
 export function framing(camera: Camera, values: ViewValues, span: Span, { width, height }: ViewSize): Framing {
   const { right, up, back } = camera;
   const middle = scale(add(span.min, span.max), 0.5);
   const tangent = Math.tan(FIELD_OF_VIEW / 2) / MARGIN;
   let [distance, metres, front] = [0, 0, 0];
-  for (const each of span.points ?? corners(span)) {
-    const corner = subtract(each, middle);
+  for (const point of span.points ?? corners(span)) {
+    const corner = subtract(point, middle);
     const [across, along] = [Math.abs(dot(corner, right)), Math.abs(dot(corner, up))];
     distance = Math.max(distance, dot(corner, back) + Math.max(along, (across * height) / width) / tangent);
     metres = Math.max(metres, (2 * across) / width, (2 * along) / height);
@@ -40,11 +43,11 @@ export function framing(camera: Camera, values: ViewValues, span: Span, { width,
     middle,
     distance,
     scale: metres > 0 ? 1 / (metres * MARGIN) : 0,
-    clip: isClipped ? { [NEAR_CLIP]: Math.max(NEAREST_CLIP, room) } : {},
+    clip: isClipped ? { [NEAR_CLIP]: Math.max(MIN_CLIP, room) } : {},
   };
 }
 
-/** The box in a target's frame around a box in the fixed frame. */
+/** Returns the bounding box in a target's frame of a box in the fixed frame. */
 export function spanInTarget(span: Span, target: Target): Span {
   const seen = corners(span).map((corner) => toTarget(corner, target));
   const points = span.points?.map((point) => toTarget(point, target));
@@ -55,8 +58,8 @@ export function spanInTarget(span: Span, target: Target): Span {
   return { min: extreme(Math.min), max: extreme(Math.max), ...(points ? { points } : {}) };
 }
 
-/** Whether a box has all of another in it. */
-export function holds(outer: Span, inner: Span): boolean {
+/** Whether a box contains another. */
+export function contains(outer: Span, inner: Span): boolean {
   return ([0, 1, 2] as const).every((i) => outer.min[i] <= inner.min[i] && inner.max[i] <= outer.max[i]);
 }
 

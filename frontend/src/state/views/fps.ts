@@ -22,10 +22,10 @@ const START: Vector = [5, 5, 10];
 const METRES_PER_PIXEL = 0.01;
 const METRES_PER_PIXEL_AHEAD = 0.1;
 const METRES_PER_WHEEL_UNIT = 0.01;
-/** The share of the line of sight along z above which it has no yaw: then the up direction defines it. */
+/** A direction whose z component exceeds this counts as vertical: its yaw is defined by the up direction. */
 const VERTICAL = 0.99999;
 
-/** RViz's FPS: a camera that flies; yaw turns it about z, pitch tips it down. */
+/** RViz's FPS: a flying camera; yaw rotates it about z, pitch tilts it down. */
 export class FpsController implements ViewController {
   readonly followsYaw = false;
   readonly focalColor = 0xffff00;
@@ -39,7 +39,7 @@ export class FpsController implements ViewController {
   }
 
   zero(): ViewValues {
-    return { ...vectorValues("Position", START), ...looking(subtract([0, 0, 0], START), [0, 0, 1]) };
+    return { ...vectorValues("Position", START), ...anglesOf(subtract([0, 0, 0], START), [0, 0, 1]) };
   }
 
   drag(values: ViewValues, drag: Drag): ViewValues {
@@ -64,7 +64,7 @@ export class FpsController implements ViewController {
 
   lookAt(values: ViewValues, point: Vector): ViewValues {
     const { position, up } = this.camera(values);
-    return looking(subtract(point, position), up);
+    return anglesOf(subtract(point, position), up);
   }
 
   fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
@@ -75,7 +75,7 @@ export class FpsController implements ViewController {
 
   mimic({ camera }: Look): ViewValues {
     const ahead = subtract([0, 0, 0], camera.back);
-    return { ...vectorValues("Position", camera.position), ...looking(ahead, camera.up) };
+    return { ...vectorValues("Position", camera.position), ...anglesOf(ahead, camera.up) };
   }
 
   retarget(values: ViewValues, from: Target, to: Target): ViewValues {
@@ -100,8 +100,8 @@ export class FpsController implements ViewController {
   }
 }
 
-/** Yaw and pitch of a line of sight; `up` defines the yaw of a vertical one. */
-function looking(ahead: Vector, up: Vector): ViewValues {
+/** Returns yaw and pitch of a direction; `up` defines the yaw of a vertical one. */
+function anglesOf(ahead: Vector, up: Vector): ViewValues {
   const far = length(ahead);
   if (far === 0) return {};
   const down = -ahead[2] / far;

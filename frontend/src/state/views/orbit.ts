@@ -22,14 +22,14 @@ const START = { distance: 10, angle: 0.785398 };
 const SMALLEST_DISTANCE = 0.001;
 const ZOOM_PER_PIXEL = 0.1;
 const ZOOM_PER_WHEEL_UNIT = 0.001;
-/** The height at which RViz puts an Orbit that replaces TopDownOrtho, m. */
+/** The height at which RViz places an Orbit view that replaces TopDownOrtho, m. */
 const ABOVE_MAP = 100;
-/** So little beside the vertical that the view keeps its side up. */
-const ASIDE = 0.0001;
+/** A small horizontal offset from the vertical, which defines the yaw of the view. */
+const HORIZONTAL_OFFSET = 0.0001;
 
 /**
- * RViz's Orbit: position = focal + distance (cos yaw cos pitch, sin yaw cos pitch, sin pitch), looking at the focal point.
- * Constants and signs are those of rviz_default_plugins' OrbitViewController.
+ * RViz's Orbit: position = focal + distance (cos yaw cos pitch, sin yaw cos pitch, sin pitch), looking at the focal
+ * point. Constants and signs are those of OrbitViewController in rviz_default_plugins.
  */
 export class OrbitController implements ViewController {
   readonly followsYaw: boolean = false;
@@ -38,7 +38,7 @@ export class OrbitController implements ViewController {
   camera(values: ViewValues): Camera {
     const { distance, yaw, pitch, focal } = orbitOf(values);
     const sign = values["Invert Z Axis"] === true ? -1 : 1;
-    const back = direction(yaw * sign, pitch * sign);
+    const back = orbitDirection(yaw * sign, pitch * sign);
     const flat = Math.hypot(back[0], back[1]);
     const right: Vector = [(-back[1] * sign) / flat, (back[0] * sign) / flat, 0];
     return { position: add(focal, back, distance), right, up: cross(back, right), back, scale: null, focal };
@@ -73,7 +73,7 @@ export class OrbitController implements ViewController {
   }
 
   lookAt(values: ViewValues, point: Vector): ViewValues {
-    return aroundFrom(point, this.camera(values).position);
+    return orbitFrom(point, this.camera(values).position);
   }
 
   fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
@@ -84,11 +84,11 @@ export class OrbitController implements ViewController {
   mimic({ cls, values, camera }: Look): ViewValues {
     if (cls === "rviz_default_plugins/Orbit") {
       const { distance, focal } = orbitOf(values);
-      return { ...aroundFrom(focal, camera.position), Distance: distance };
+      return { ...orbitFrom(focal, camera.position), Distance: distance };
     }
-    if (cls === "rviz_default_plugins/TopDownOrtho") return aboveMap(camera.position);
+    if (cls === "rviz_default_plugins/TopDownOrtho") return orbitAbove(camera.position);
     const distance = length(camera.position);
-    return aroundFrom(add(camera.position, camera.back, -distance), camera.position);
+    return orbitFrom(add(camera.position, camera.back, -distance), camera.position);
   }
 
   retarget(values: ViewValues, from: Target, to: Target): ViewValues {
@@ -108,7 +108,7 @@ export class OrbitController implements ViewController {
     return shift ? "orbitShift" : "orbit";
   }
 
-  /** The focal point follows the pointer in the camera's plane. */
+  /** Moves the focal point with the pointer in the camera's plane. */
   protected pan(values: ViewValues, { dx, dy, height, left, middle }: Drag): ViewValues {
     if (!left && !middle) return {};
     const { distance, focal } = orbitOf(values);
@@ -132,8 +132,8 @@ export function orbitOf(values: ViewValues): { distance: number; yaw: number; pi
   };
 }
 
-/** The values of a camera that looks from one point at another. */
-export function aroundFrom(focal: Vector, viewpoint: Vector): ViewValues {
+/** Returns the values of a camera that looks from one point at another. */
+export function orbitFrom(focal: Vector, viewpoint: Vector): ViewValues {
   const distance = clampDistance(distanceBetween(focal, viewpoint));
   const [x, y, z] = scale(add(viewpoint, focal, -1), 1 / distance);
   return {
@@ -144,16 +144,16 @@ export function aroundFrom(focal: Vector, viewpoint: Vector): ViewValues {
   };
 }
 
-/** The values that look straight down at where a TopDownOrtho was. */
-export function aboveMap([x, y]: Vector): ViewValues {
-  return aroundFrom([x, y, 0], [x, y - ASIDE, ABOVE_MAP]);
+/** Returns the values that look straight down at the position of a TopDownOrtho view. */
+export function orbitAbove([x, y]: Vector): ViewValues {
+  return orbitFrom([x, y, 0], [x, y - HORIZONTAL_OFFSET, ABOVE_MAP]);
 }
 
 function clampDistance(distance: number): number {
   return Math.max(SMALLEST_DISTANCE, distance);
 }
 
-/** The unit vector from the focal point to the camera. */
-export function direction(yaw: number, pitch: number): Vector {
+/** Returns the unit vector from the focal point to the camera. */
+export function orbitDirection(yaw: number, pitch: number): Vector {
   return [Math.cos(yaw) * Math.cos(pitch), Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];
 }

@@ -1,6 +1,6 @@
 import { toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
 import { framing } from "./fit";
-import { turn, type Span, type Vector } from "./vector";
+import { rotateZ, type Span, type Vector } from "./vector";
 import {
   number,
   RADIANS_PER_PIXEL,
@@ -21,7 +21,7 @@ const HEIGHT = 500;
 const ZOOM_PER_PIXEL = 0.01;
 const ZOOM_PER_WHEEL_UNIT = 0.001;
 
-/** RViz's TopDownOrtho: straight down, without perspective; x is to the right at angle 0. */
+/** RViz's TopDownOrtho: an orthographic view straight down; x points right at angle 0. */
 export class TopDownOrthoController implements ViewController {
   readonly followsYaw = false;
   readonly focalColor = 0xffff00;
@@ -29,12 +29,12 @@ export class TopDownOrthoController implements ViewController {
   camera(values: ViewValues): Camera {
     const scale = scaleOf(values);
     const angle = number(values, "Angle", 0);
-    // A negative scale, which a fast drag in RViz leads to, mirrors the view in both directions.
+    // A negative scale, which RViz allows by a fast drag, mirrors the view in both directions.
     const side = Math.sign(scale);
     return {
       position: [number(values, "X", 0), number(values, "Y", 0), HEIGHT],
-      right: turn([side, 0, 0], angle),
-      up: turn([0, side, 0], angle),
+      right: rotateZ([side, 0, 0], angle),
+      up: rotateZ([0, side, 0], angle),
       back: [0, 0, 1],
       scale: Math.abs(scale),
       focal: null,
@@ -53,7 +53,7 @@ export class TopDownOrthoController implements ViewController {
       case "rotate2d":
         return { Angle: number(values, "Angle", 0) + dx * RADIANS_PER_PIXEL };
       case "moveXY":
-        return shifted(values, turn([-dx / scale, dy / scale, 0], number(values, "Angle", 0)));
+        return shifted(values, rotateZ([-dx / scale, dy / scale, 0], number(values, "Angle", 0)));
       case "zoom":
         return { Scale: zoomed(scale, 1 - dy * ZOOM_PER_PIXEL) };
     }
@@ -105,7 +105,7 @@ function scaleOf(values: ViewValues): number {
   return clampScale(number(values, "Scale", START_SCALE));
 }
 
-/** Keeps away from zero, on the side where it is. */
+/** Keeps the scale away from zero, without changing its sign. */
 function clampScale(scale: number): number {
   return scale < 0 ? Math.min(-SMALLEST_SCALE, scale) : Math.max(SMALLEST_SCALE, scale);
 }

@@ -1,17 +1,17 @@
-/** Three numbers: metres or a direction, x, y, z. */
+/** x, y, z: a position in m, or a direction. */
 export type Vector = readonly [number, number, number];
 
-/** A box along the axes of a frame: its lowest and highest corner, m. */
+/** An axis-aligned box in a frame: its minimum and maximum corner, m. */
 export interface Span {
   readonly min: Vector;
   readonly max: Vector;
-  /** The points of its content, for a camera that shall see these and not the corners. */
+  /** Points of the content; if given, they are framed instead of the corners. */
   readonly points?: readonly Vector[];
 }
 
 export const ORIGIN: Vector = [0, 0, 0];
 
-/** `a + factor * b` */
+/** Returns `a + factor * b`. */
 export function add(a: Vector, b: Vector, factor = 1): Vector {
   return [a[0] + b[0] * factor, a[1] + b[1] * factor, a[2] + b[2] * factor];
 }
@@ -44,8 +44,8 @@ export function unit(a: Vector): Vector {
   return scale(a, 1 / (length(a) || 1));
 }
 
-/** Turns about z, radians. */
-export function turn(a: Vector, angle: number): Vector {
+/** Rotates about z, rad. */
+export function rotateZ(a: Vector, angle: number): Vector {
   const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
   return [a[0] * cos - a[1] * sin, a[0] * sin + a[1] * cos, a[2]];
 }

@@ -2,29 +2,29 @@ import type { PropertyValue } from "../../protocol";
 import type { Camera, Target, ViewSize } from "./camera";
 import type { Span, Vector } from "./vector";
 
-/** Values of a view by the paths of their properties: `Distance`, `Focal Point/X`. */
+/** The values of a view by the paths of their properties: `Distance`, `Focal Point/X`. */
 export type ViewValues = Readonly<Record<string, PropertyValue>>;
 
-/** A movement of the mouse: its buttons, and its distance in pixels. */
+/** A movement of the mouse in pixels, with its buttons. */
 export interface Drag extends ViewSize {
   readonly left: boolean;
   readonly middle: boolean;
   readonly right: boolean;
   readonly shift: boolean;
-  /** Where it was before, from the upper left corner. */
+  /** The previous position, from the upper left corner. */
   readonly x: number;
   readonly y: number;
   readonly dx: number;
   readonly dy: number;
 }
 
-/** The motion of the camera under the mouse; each has its cursor. */
+/** The motion of the camera caused by the mouse; each has its own cursor. */
 export type Motion = "rotate3d" | "rotate2d" | "moveXY" | "moveZ" | "zoom";
 
-/** The text of the status line about the buttons. */
+/** The text of the status line about the mouse buttons. */
 export type MouseHint = "orbit" | "orbitShift" | "groundShift" | "fly" | "flyShift" | "map" | "mapShift";
 
-/** The view to look like: its class, its values, and its camera in the frame of the new one's target. */
+/** The view to imitate: its class, its values, and its camera in the frame of the new view's target. */
 export interface Look {
   readonly cls: string;
   readonly values: ViewValues;
@@ -32,26 +32,26 @@ export interface Look {
 }
 
 /**
- * One of RViz's view classes: the meaning of its values, and how the mouse changes them. All is in the frame of the
- * view's target, metres and radians; methods return the values that change.
+ * One of RViz's view classes: the meaning of its values, and how the mouse changes them. All values are in the frame of
+ * the view's target, in m and rad; methods return the values that change.
  */
 export interface ViewController {
-  /** Turns with the target's yaw, too. */
+  /** Whether the view rotates with the target's yaw, too. */
   readonly followsYaw: boolean;
-  /** Colour of the disc at the point the camera turns about. */
+  /** The colour of the disc at the focal point. */
   readonly focalColor: number;
   camera(values: ViewValues): Camera;
-  /** RViz's Zero button. */
+  /** Returns the values of RViz's Zero button. */
   zero(): ViewValues;
   drag(values: ViewValues, drag: Drag): ViewValues;
-  /** `delta` is 120 a notch, positive away from the user. */
+  /** Handles the wheel; `delta` is 120 per notch, positive away from the user. */
   wheel(values: ViewValues, delta: number, shift: boolean): ViewValues;
   lookAt(values: ViewValues, point: Vector): ViewValues;
-  /** Looks at all of a box from the side that the camera is at, in a canvas of this size. */
+  /** Fits a box into view from the current direction, in a canvas of this size. */
   fit(values: ViewValues, box: Span, size: ViewSize): ViewValues;
-  /** Looks as another view does, as far as RViz does that. */
+  /** Imitates another view, as far as RViz does. */
   mimic(look: Look): ViewValues;
-  /** Another frame became the target: the camera stays where it is. */
+  /** Converts the values to another target frame without moving the camera. */
   retarget(values: ViewValues, from: Target, to: Target): ViewValues;
   motion(drag: Pick<Drag, "left" | "middle" | "right" | "shift">): Motion;
   hint(shift: boolean): MouseHint;
@@ -76,7 +76,7 @@ export function vectorValues(name: string, [x, y, z]: Vector): ViewValues {
 
 export function wrapYaw(yaw: number): number {
   const turn = 2 * Math.PI;
-  // A value in range stays as the user wrote it, to the last digit.
+  // Keep a value in range exactly as the user wrote it.
   if (yaw >= 0 && yaw < turn) return yaw;
   return ((yaw % turn) + turn) % turn;
 }

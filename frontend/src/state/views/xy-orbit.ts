@@ -1,15 +1,17 @@
 import { onGround, rayThrough, type Camera, type ViewSize } from "./camera";
 import { framing } from "./fit";
 import { add, distanceBetween, length, scale, subtract, type Span, type Vector } from "./vector";
-import { aboveMap, aroundFrom, OrbitController, orbitOf, type OrbitMotion } from "./orbit";
+import { orbitAbove, orbitFrom, OrbitController, orbitOf, type OrbitMotion } from "./orbit";
 import { vectorValues, type Drag, type Look, type MouseHint, type ViewValues } from "./view-controller";
 
-/** Part of the distance by which the camera is raised, so that the focal point is in the lower half of the view. */
+/**
+ * The share of the distance by which the camera is raised, which places the focal point in the lower half of the view.
+ */
 const RAISE = 0.2;
-/** Near the horizon a pixel is many metres; the focal point goes no further in one step. */
-const LONGEST_STEP = 1;
+/** m; near the horizon a pixel covers many metres, so the motion of the focal point per step is limited. */
+const MAX_STEP = 1;
 
-/** RViz's XYOrbit: an Orbit whose focal point moves on the ground, z = 0 of its target. */
+/** RViz's XYOrbit: an Orbit view whose focal point moves on the ground, z = 0 of its target. */
 export class XYOrbitController extends OrbitController {
   override readonly focalColor: number = 0x00ffff;
 
@@ -23,10 +25,12 @@ export class XYOrbitController extends OrbitController {
   }
 
   override lookAt(values: ViewValues, [x, y]: Vector): ViewValues {
-    return aroundFrom([x, y, 0], this.camera(values).position);
+    return orbitFrom([x, y, 0], this.camera(values).position);
   }
 
-  /** The focal point stays on the ground, where the line of sight of the camera that sees all of the box meets it. */
+  /**
+   * Keeps the focal point on the ground, where the line of sight of a camera that shows the whole box intersects it.
+   */
   override fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
     const camera = this.camera(values);
     const { middle, distance, clip } = framing(camera, values, box, size);
@@ -34,9 +38,9 @@ export class XYOrbitController extends OrbitController {
     return { ...this.mimic({ cls: "", values, camera: { ...camera, position } }), ...clip };
   }
 
-  /** Keeps the view if the camera is above the ground and sees some of it; otherwise starts over, as RViz does. */
+  /** Keeps the camera if it is above the ground and looks at it; otherwise starts from the default, as RViz does. */
   override mimic({ cls, camera }: Look): ViewValues {
-    if (cls === "rviz_default_plugins/TopDownOrtho") return aboveMap(camera.position);
+    if (cls === "rviz_default_plugins/TopDownOrtho") return orbitAbove(camera.position);
     const ahead = onGround({ origin: camera.position, direction: scale(camera.back, -1) });
     const below = onGround({ origin: camera.position, direction: scale(camera.up, -1) });
     if (!ahead || !below) return this.zero();
@@ -44,7 +48,7 @@ export class XYOrbitController extends OrbitController {
     const distance = (far * down) / (RAISE * far + down);
     const viewpoint = add(camera.position, camera.up, -RAISE * distance);
     const focal = onGround({ origin: viewpoint, direction: scale(camera.back, -1) });
-    return focal ? aroundFrom(focal, viewpoint) : this.zero();
+    return focal ? orbitFrom(focal, viewpoint) : this.zero();
   }
 
   override motion(drag: Pick<Drag, "left" | "middle" | "right" | "shift">): OrbitMotion {
@@ -56,7 +60,7 @@ export class XYOrbitController extends OrbitController {
     return shift ? "groundShift" : "orbit";
   }
 
-  /** The ground follows the pointer. */
+  /** Moves the ground with the pointer. */
   protected override pan(values: ViewValues, drag: Drag): ViewValues {
     if (!drag.left && !drag.middle) return {};
     const camera = this.camera(values);
@@ -65,12 +69,12 @@ export class XYOrbitController extends OrbitController {
     if (!before || !after) return {};
     const step = subtract(before, after);
     const far = length(step);
-    const allowed = far > LONGEST_STEP ? scale(step, LONGEST_STEP / far) : step;
+    const allowed = far > MAX_STEP ? scale(step, MAX_STEP / far) : step;
     return vectorValues("Focal Point", add(orbitOf(values).focal, allowed));
   }
 }
 
-/** RViz's ThirdPersonFollower: an XYOrbit that moves and turns with its target, but does not tilt with it. */
+/** RViz's ThirdPersonFollower: an XYOrbit view that moves and rotates with its target, but does not tilt with it. */
 export class ThirdPersonFollowerController extends XYOrbitController {
   override readonly followsYaw = true;
 }

@@ -1,7 +1,7 @@
 /// <reference lib="webworker" />
 import { MOST_SAMPLES, SOUND_RATE } from "../../protocol";
 import { GapFinder } from "./gaps";
-import { pcm, Resampler } from "./resampler";
+import { toPcm, Resampler } from "./resampler";
 
 declare const sampleRate: number;
 declare class AudioWorkletProcessor {
@@ -9,18 +9,19 @@ declare class AudioWorkletProcessor {
 }
 declare function registerProcessor(name: string, processor: new () => AudioWorkletProcessor): void;
 
-/** A message of the thread for sound. */
+/** A message from the audio thread. */
 export interface CaptureMessage {
   samples: Int16Array;
-  /** Seconds of sound that were found to be lost since the last message. */
+  /** The seconds of sound lost since the last message. */
   lost: number;
   /** The number of the request that this answers; all sound until then has been sent. */
   answers: number | null;
 }
 
 /**
- * Runs in the browser's thread for sound: the microphone's samples become blocks of a tenth of a second, mono, at the
- * rate that speech engines expect. A message requests the current part of a block at once, with the message's number.
+ * Converts the microphone's samples in the browser's audio thread into blocks of a tenth of a second, mono, at the
+ * sample rate of the speech engines. A message requests the current part of a block immediately, with the message's
+ * number.
  */
 class Capture extends AudioWorkletProcessor {
   private readonly resampler = new Resampler(sampleRate, SOUND_RATE);
@@ -42,15 +43,15 @@ class Capture extends AudioWorkletProcessor {
     const [first] = channels;
     if (!first) return true;
     const mono = first.map((_, i) => channels.reduce((sum, channel) => sum + (channel[i] ?? 0), 0) / channels.length);
-    this.gaps.take(mono, Date.now());
-    for (const sample of pcm(this.resampler.take(mono))) {
+    this.gaps.add(mono, Date.now());
+    for (const sample of toPcm(this.resampler.add(mono))) {
       this.block[this.filled++] = sample;
       if (this.filled === MOST_SAMPLES) this.send();
     }
     return true;
   }
 
-  /** Delivers the current part of a block; `answers` is the number of the request for it. */
+  /** Sends the current part of a block; `answers` is the number of the request for it. */
   private send(answers: number | null = null): void {
     const message: CaptureMessage = { samples: this.block.slice(0, this.filled), lost: this.gaps.takeLost(), answers };
     this.port.postMessage(message);

@@ -1,51 +1,54 @@
-/** Samples of exact silence that count as a hole: browsers insert so many at a time if sound is late. */
+/** Samples of exact silence that count as a hole: browsers insert this many at a time if sound is late. */
 const HOLE = 128;
-/** Seconds of exact silence that count as silence and not as a hole, however abruptly they begin. */
+/** Seconds of exact silence that count as silence rather than a hole, even if they begin abruptly. */
 const SILENCE = 1;
-/** Samples before a hole that show whether sound was cut off there, and how loud they must be: -40 dB. */
+/**
+ * The samples before a hole that show whether sound was cut off there, and the level above which they are sound: -40
+ * dB.
+ */
 const EDGE = 32;
 const LOUD = 0.01;
-/** Seconds that are searched for the latest sound, and by how much it may be later than before. */
+/** Seconds in which the least delayed sound is searched for, and the increase of its delay that counts as a gap. */
 const WINDOW = 0.25;
 const LATE_MS = 60;
-/** Windows at the beginning of a stream, which have no regular times. */
+/** The number of windows at the start of a stream, whose timing is irregular. */
 const SETTLING = 2;
 
 /**
- * Finds gaps in a stream of sound. A busy machine leaves holes of exact silence, at which sound ends
- * abruptly, or drops samples: then all later samples arrive later than they should.
+ * Finds gaps in an audio stream. A busy machine inserts holes of exact silence, at which sound ends abruptly, or drops
+ * samples, so that all later samples arrive late.
  */
 export class GapFinder {
   private lost = 0;
   private zeros = 0;
   private edge = new Float32Array(EDGE);
   private edgeAt = 0;
-  private taken = 0;
+  private sampleCount = 0;
   private windowEnd: number;
   private windows = 0;
-  private least = Infinity;
-  private before = Infinity;
+  private minimumDelay = Infinity;
+  private previousDelay = Infinity;
 
-  /** Detects gaps in a stream of `rate` samples a second. */
+  /** Starts at the beginning of a stream with this sample rate, Hz. */
   constructor(private readonly rate: number) {
     this.windowEnd = WINDOW * rate;
   }
 
-  /** The next samples of the stream, -1 to 1, which arrived at a time in milliseconds. */
-  take(samples: Float32Array, now: number): void {
+  /** Adds the next samples of the stream, -1 to 1, which arrived at a time in ms. */
+  add(samples: Float32Array, now: number): void {
     for (const sample of samples) this.lookForHole(sample);
-    this.taken += samples.length;
-    this.least = Math.min(this.least, now - (1000 * this.taken) / this.rate);
-    if (this.taken < this.windowEnd) return;
-    const later = this.least - this.before;
+    this.sampleCount += samples.length;
+    this.minimumDelay = Math.min(this.minimumDelay, now - (1000 * this.sampleCount) / this.rate);
+    if (this.sampleCount < this.windowEnd) return;
+    const later = this.minimumDelay - this.previousDelay;
     if (this.windows >= SETTLING && later > LATE_MS) this.lost += later / 1000;
     this.windows += 1;
     this.windowEnd += WINDOW * this.rate;
-    this.before = this.least;
-    this.least = Infinity;
+    this.previousDelay = this.minimumDelay;
+    this.minimumDelay = Infinity;
   }
 
-  /** The seconds that were lost since the last call. */
+  /** Returns the seconds lost since the last call. */
   takeLost(): number {
     const { lost } = this;
     this.lost = 0;

@@ -1,7 +1,7 @@
-/** Decibels below full scale at which a meter is empty. */
+/** The level at which a meter is empty, dB below full scale. */
 const FLOOR = 60;
 
-/** The part of a meter that a peak of 0 to 1 fills, by its decibels. */
+/** Returns the share of a meter that a peak of 0 to 1 fills, on a scale in dB. */
 export function meterPart(peak: number): number {
   return peak <= 0 ? 0 : Math.max(0, Math.min(1, 1 + (20 * Math.log10(peak)) / FLOOR));
 }

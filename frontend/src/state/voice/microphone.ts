@@ -3,37 +3,37 @@ import type { CaptureMessage } from "./capture-worklet";
 import workletUrl from "./capture-worklet.ts?worker&url";
 
 /**
- * Why there is no sound. `insecure`: the browser gives microphones only to https and to this machine; `denied`: the user
- * or a policy forbids it; `none`: there is no microphone; `busy`: another program has it; `lost`: it was removed.
+ * Why there is no sound. `insecure`: browsers permit microphones only over HTTPS and on this machine; `denied`: the
+ * user or a policy forbids it; `none`: there is no microphone; `busy`: another program uses it; `lost`: it was removed.
  */
 export type MicrophoneProblem = "insecure" | "denied" | "none" | "busy" | "lost" | "failed";
 
-/** A running capture of a microphone; tests have one of their own. */
+/** A running capture of a microphone; tests substitute their own. */
 export interface Capture {
-  /** Requests the current part of a block; resolves when it is delivered. */
+  /** Requests the current part of a block; resolves once it is delivered. */
   flush(): Promise<void>;
   close(): void;
 }
 
-/** Resolves when the capture has started; `block` receives the sound, with the seconds that are missing in it. */
+/** Resolves once the capture has started; `block` receives sound, and the seconds missing from it. */
 export type OpenCapture = (block: (samples: Int16Array, lostSeconds: number) => void, lost: () => void) => Promise<Capture>;
 
-/** The browser's microphone: opened on the first request, and closed when it is no longer needed. */
+/** The browser's microphone, which is opened on the first request and closed when it is no longer needed. */
 export class Microphone {
-  /** Blocks of a tenth of a second, mono, 16 kHz. */
+  /** Emits blocks of a tenth of a second, mono, 16 kHz. */
   readonly block = new Signal<Int16Array>();
   readonly changed = new Signal();
   problem: MicrophoneProblem | null = null;
   /** The browser's message for a problem of unknown kind. */
   detail = "";
-  /** The loudest sample of the last block, 0 to 1. */
+  /** The peak of the last block, 0 to 1. */
   peak = 0;
-  /** Seconds of sound that were lost so far: a busy machine does not record all of it. */
+  /** The seconds of sound lost so far, because a busy machine does not record everything. */
   lostSeconds = 0;
   private capture: Capture | null = null;
   private opening: Promise<boolean> | null = null;
-  /** Counts openings: the results of an abandoned one are dropped. */
-  private turn = 0;
+  /** The number of attempts to open the microphone; results of an abandoned attempt are dropped. */
+  private attempt = 0;
 
   constructor(private readonly openCapture: OpenCapture = openBrowserCapture) {}
 
@@ -41,12 +41,12 @@ export class Microphone {
     return this.capture !== null;
   }
 
-  /** Whether the permission is pending, or the microphone is starting. */
+  /** Whether the user is being asked for permission, or the microphone is starting. */
   get isOpening(): boolean {
     return this.opening !== null;
   }
 
-  /** Opens it, unless it is open; false when there is a `problem`. */
+  /** Opens the microphone if it is closed; returns false if there is a `problem`. */
   open(): Promise<boolean> {
     if (this.capture) return Promise.resolve(true);
     this.problem = null;
@@ -55,13 +55,13 @@ export class Microphone {
     return this.opening;
   }
 
-  /** Has the sound up to now delivered as a block, however short. */
+  /** Delivers the sound recorded so far as a block, however short. */
   async flush(): Promise<void> {
     await this.capture?.flush();
   }
 
   close(): void {
-    this.turn += 1;
+    this.attempt += 1;
     this.capture?.close();
     this.capture = null;
     this.peak = 0;
@@ -69,24 +69,24 @@ export class Microphone {
   }
 
   private async start(): Promise<boolean> {
-    const turn = ++this.turn;
+    const turn = ++this.attempt;
     try {
       const capture = await this.openCapture(
         (samples, lostSeconds) => {
-          if (turn === this.turn) this.take(samples, lostSeconds);
+          if (turn === this.attempt) this.addBlock(samples, lostSeconds);
         },
         () => {
-          if (turn === this.turn) this.fail("lost");
+          if (turn === this.attempt) this.fail("lost");
         },
       );
-      if (turn !== this.turn) {
+      if (turn !== this.attempt) {
         capture.close();
         return false;
       }
       this.capture = capture;
       return true;
     } catch (error) {
-      if (turn === this.turn) this.fail(problemOf(error), error instanceof Error ? error.message : String(error));
+      if (turn === this.attempt) this.fail(problemOf(error), error instanceof Error ? error.message : String(error));
       return false;
     } finally {
       this.opening = null;
@@ -94,7 +94,7 @@ export class Microphone {
     }
   }
 
-  private take(samples: Int16Array, lostSeconds: number): void {
+  private addBlock(samples: Int16Array, lostSeconds: number): void {
     this.lostSeconds += lostSeconds;
     if (samples.length === 0) return;
     this.peak = samples.reduce((most, sample) => Math.max(most, Math.abs(sample)), 0) / 32768;
@@ -124,9 +124,9 @@ function problemOf(error: unknown): MicrophoneProblem {
   return (error instanceof Error ? PROBLEMS[error.name] : undefined) ?? "failed";
 }
 
-/** The microphone that the user allows, through an AudioWorklet. */
+/** Opens the microphone that the user allows, through an AudioWorklet. */
 async function openBrowserCapture(block: (samples: Int16Array, lostSeconds: number) => void, gone: () => void): Promise<Capture> {
-  // On an insecure address, browsers do not even have the property.
+  // On an insecure address, browsers do not define this property.
   const devices = (navigator as Partial<Navigator>).mediaDevices;
   if (!isSecureContext || !devices) throw new InsecureError("no secure context");
   const context = new AudioContext();
@@ -136,7 +136,7 @@ async function openBrowserCapture(block: (samples: Int16Array, lostSeconds: numb
     void context.close();
   };
   try {
-    // This comes first: speech between the microphone's opening and the program's would be lost.
+    // Load the module first: sound between opening the microphone and loading would be lost.
     await context.audioWorklet.addModule(workletUrl);
     const running = context.resume();
     running.catch(() => undefined); // it is awaited below, unless there is no microphone

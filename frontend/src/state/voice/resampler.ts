@@ -1,41 +1,41 @@
-/** Zero crossings of the sinc on each side. */
+/** The number of zero crossings of the sinc on each side. */
 const REACH = 16;
-/** The part of the band that is kept: the filter needs the rest to fall. */
+/** The share of the band that is preserved; the filter needs the rest to roll off. */
 const BAND = 0.92;
 
 /**
- * Converts a stream of samples to another rate: each sample of the result is a sum of those around its time, weighted with
- * a windowed sinc, which also removes the frequencies that the new rate cannot carry.
+ * Converts a stream of samples to another sample rate: each output sample is a sum of the input samples around its
+ * time, weighted by a windowed sinc, which also removes frequencies above the new limit.
  */
 export class Resampler {
   private readonly step: number;
   private readonly half: number;
   private readonly cutoff: number;
-  private kept: Float32Array;
-  /** Time of the next sample of the result, in samples of `kept`. */
+  private buffered: Float32Array;
+  /** The time of the next output sample, in samples of `buffered`. */
   private at: number;
 
   constructor(from: number, to: number) {
     this.step = from / to;
     this.cutoff = BAND * Math.min(1, to / from);
     this.half = Math.ceil(REACH / this.cutoff);
-    this.kept = new Float32Array(this.half);
+    this.buffered = new Float32Array(this.half);
     this.at = this.half;
   }
 
-  /** The samples that have become known by the next ones of the stream. */
-  take(samples: Float32Array): Float32Array {
-    const all = new Float32Array(this.kept.length + samples.length);
-    all.set(this.kept);
-    all.set(samples, this.kept.length);
+  /** Adds samples of the stream, and returns the output samples that this completes. */
+  add(samples: Float32Array): Float32Array {
+    const all = new Float32Array(this.buffered.length + samples.length);
+    all.set(this.buffered);
+    all.set(samples, this.buffered.length);
     const count = Math.max(0, Math.ceil((all.length - this.half - this.at) / this.step));
-    const made = new Float32Array(count);
-    for (let i = 0; i < count; i++) made[i] = this.sampleAt(all, this.at + i * this.step);
+    const output = new Float32Array(count);
+    for (let i = 0; i < count; i++) output[i] = this.sampleAt(all, this.at + i * this.step);
     const next = this.at + count * this.step;
     const drop = Math.min(all.length, Math.max(0, Math.floor(next) - this.half));
-    this.kept = all.slice(drop);
+    this.buffered = all.slice(drop);
     this.at = next - drop;
-    return made;
+    return output;
   }
 
   private sampleAt(all: Float32Array, at: number): number {
@@ -53,7 +53,7 @@ export class Resampler {
   }
 }
 
-/** Samples of -1 to 1 as PCM of 16 bits. */
-export function pcm(samples: Float32Array): Int16Array {
+/** Converts samples from -1 to 1 to 16-bit PCM. */
+export function toPcm(samples: Float32Array): Int16Array {
   return Int16Array.from(samples, (value) => Math.round(Math.max(-1, Math.min(1, value)) * 32767));
 }

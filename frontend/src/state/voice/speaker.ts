@@ -4,15 +4,15 @@ import type { TextStorage } from "../../storage";
 
 export interface SpeakerSettings {
   on: boolean;
-  /** By its address; empty for the browser's choice. */
+  /** The URI of the voice; empty for the browser's choice. */
   voice: string;
 }
 
 const SAVED_KEY = "linkwright.speaker.1";
 
-/** Reads answers aloud, with the voices that the browser has. */
+/** Reads answers aloud with the browser's voices. */
 export class Speaker {
-  /** Settings, or the voices that there are. */
+  /** The settings or the available voices changed. */
   readonly changed = new Signal();
   settings: SpeakerSettings = { on: false, voice: "" };
   private readonly synthesis = (globalThis as { speechSynthesis?: SpeechSynthesis }).speechSynthesis ?? null;
@@ -21,16 +21,16 @@ export class Speaker {
     try {
       this.settings = { ...this.settings, ...(JSON.parse(storage.getItem(SAVED_KEY) ?? "{}") as Partial<SpeakerSettings>) };
     } catch {
-      // The stored value is not ours.
+      // The stored value is invalid.
     }
     this.synthesis?.addEventListener("voiceschanged", () => this.changed.emit());
   }
 
-  /** The voices, those of the user's languages first. */
+  /** The available voices, those of the user's languages first. */
   get voices(): readonly SpeechSynthesisVoice[] {
     const { languages } = navigator;
     const rank = (voice: SpeechSynthesisVoice): number => {
-      const at = languages.findIndex((each) => voice.lang.toLowerCase().startsWith(each.slice(0, 2).toLowerCase()));
+      const at = languages.findIndex((language) => voice.lang.toLowerCase().startsWith(language.slice(0, 2).toLowerCase()));
       return at < 0 ? languages.length : at;
     };
     return [...(this.synthesis?.getVoices() ?? [])].sort((a, b) => rank(a) - rank(b) || a.name.localeCompare(b.name));
@@ -58,7 +58,7 @@ export class Speaker {
     this.synthesis.speak(utterance);
   }
 
-  /** Stops at once. */
+  /** Stops speaking immediately. */
   hush(): void {
     this.synthesis?.cancel();
   }

@@ -1,24 +1,30 @@
 import type { Connection } from "../../connection/connection";
-import { MOST_LOST_SAMPLES, SOUND_KIND, SOUND_RATE, type ConversationPart, type TalkMode, type VoiceState as Told } from "../../protocol";
+import { MOST_LOST_SAMPLES, SOUND_KIND, SOUND_RATE, type ConversationPart, type TalkMode, type VoiceState as ServerState } from "../../protocol";
 import { Signal } from "../../signal";
 import type { TextStorage } from "../../storage";
 import { Microphone } from "./microphone";
 import { Speaker } from "./speaker";
 
-/** How long the microphone stays open after the button was released: opening it takes a moment, in which a word is lost. */
-const WARM_MS = 60_000;
-const MOST_KEPT = 100;
-/** Seconds that may be missing in a word. Of synthetic words all were recognised after enrolling with 0.03, half with 0.1. */
-const MOST_LOST = 0.03;
+/** ms for which the microphone stays open after the button was released: while it opens, a word may be lost. */
+const OPEN_AFTER_USE_MS = 60_000;
+const MAX_HISTORY = 100;
+/**
+ * The maximum seconds missing in a word. Of synthetic words enrolled with 0.03 s missing, all were recognised; with 0.1
+ * s, half.
+ */
+const MAX_LOST_SECONDS = 0.03;
 const HEADER_BYTES = 16;
 
 /** A line of the conversation. */
-export interface Said {
+export interface ConversationLine {
   part: ConversationPart;
   text: string;
 }
 
-/** A binary frame with a block of sound, and the seconds lost in it; `viewer/protocol/voice.py` has its form. */
+/**
+ * Returns a binary frame with a block of sound and the seconds lost in it; `viewer/protocol/voice.py` defines its
+ * format.
+ */
 export function soundFrame(samples: Int16Array, lostSeconds = 0): ArrayBuffer {
   const frame = new ArrayBuffer(HEADER_BYTES + 2 * samples.length);
   const view = new DataView(frame);
@@ -29,30 +35,30 @@ export function soundFrame(samples: Int16Array, lostSeconds = 0): ArrayBuffer {
   return frame;
 }
 
-/** Talking to the robot: the button, the microphone, and the conversation. */
+/** The state for talking to the robot: the button, the microphone and the conversation. */
 export class VoiceState {
   readonly changed = new Signal();
-  /** A line was spoken, or the text being recognized changed. */
+  /** A line was added to the conversation, or the partial text changed. */
   readonly conversed = new Signal();
-  /** The spoken lines, oldest first. */
-  readonly history: Said[] = [];
-  /** The text that is being recognized. */
+  /** The lines of the conversation, oldest first. */
+  readonly history: ConversationLine[] = [];
+  /** The text recognised so far of the current utterance. */
   partial = "";
   /** The server's state; null while it is not requested. */
-  told: Told | null = null;
+  serverState: ServerState | null = null;
   readonly speaker: Speaker;
   private readonly watching = new Set<object>();
-  private pressed = false;
-  /** The button is released, and the speech until then is on its way. */
-  private ending = false;
-  private listening = false;
-  private taking = false;
+  private isPressed = false;
+  /** Whether the button was released, but the last sound is not sent yet. */
+  private isFlushing = false;
+  private isListening = false;
+  private isRecordingWord = false;
   private mode: TalkMode = "off";
   private timer = 0;
-  /** Seconds that the microphone had lost before the current speech. */
+  /** The seconds that the microphone had lost before the current utterance. */
   private lostBefore = 0;
   private isAnswered = false;
-  /** Seconds that it had lost until the last block. */
+  /** The seconds that it had lost up to the last block. */
   private lostUntil = 0;
 
   constructor(
@@ -61,27 +67,27 @@ export class VoiceState {
     readonly microphone: Microphone = new Microphone(),
   ) {
     this.speaker = new Speaker(storage);
-    connection.on("voice_state", (told) => {
-      this.told = told;
-      if (told.cut) this.release();
+    connection.on("voice_state", (state) => {
+      this.serverState = state;
+      if (state.cut) this.release();
       this.changed.emit();
     });
-    connection.on("conversation_text", ({ part, text }) => this.take(part, text));
+    connection.on("conversation_text", ({ part, text }) => this.addText(part, text));
     connection.on("hello", () => {
       this.mode = "off";
-      this.announce();
+      this.sendMode();
       if (this.watched) this.connection.send({ type: "watch_voice", watched: true });
     });
     connection.stateChanged.on((state) => {
       if (state === "connected") return;
-      this.told = null;
+      this.serverState = null;
       this.release();
       this.changed.emit();
     });
     microphone.block.on((samples) => this.send(samples));
     microphone.changed.on(() => {
-      if (microphone.problem !== null) this.listening = this.pressed = this.taking = false;
-      this.announce();
+      if (microphone.problem !== null) this.isListening = this.isPressed = this.isRecordingWord = false;
+      this.sendMode();
       this.changed.emit();
     });
     this.speaker.changed.on(() => {
@@ -93,107 +99,110 @@ export class VoiceState {
 
   /** Whether the button is held. */
   get held(): boolean {
-    return this.pressed;
+    return this.isPressed;
   }
 
-  /** Whether all is listened to. */
+  /** Whether the page listens all the time. */
   get open(): boolean {
-    return this.listening;
+    return this.isListening;
   }
 
   get watched(): boolean {
     return this.watching.size > 0;
   }
 
-  /** Whether too much sound was lost in the current or last speech, with the button or for a recording. */
+  /** Whether too much sound was lost in the current or last utterance or recording. */
   get hasGaps(): boolean {
-    return !this.listening && this.microphone.lostSeconds - this.lostBefore > MOST_LOST;
+    return !this.isListening && this.microphone.lostSeconds - this.lostBefore > MAX_LOST_SECONDS;
   }
 
-  /** Whether the robot has answered since the button was pressed last: then it asks for a repetition itself. */
+  /** Whether the robot has answered since the button was last pressed; in that case it asks for a repetition itself. */
   get answered(): boolean {
     return this.isAnswered;
   }
 
-  /** Starts or stops listening to the conversation for `who`. */
+  /** Starts or stops receiving the conversation for `who`. */
   watch(who: object, wanted: boolean): void {
     const before = this.watched;
     if (wanted) this.watching.add(who);
     else this.watching.delete(who);
     if (this.watched === before) return;
-    if (!this.watched) this.told = null;
+    if (!this.watched) this.serverState = null;
     this.connection.send({ type: "watch_voice", watched: this.watched });
   }
 
-  /** The button is pressed: speech from now on is a command. */
+  /** Handles a press of the button: speech from now on is a command. */
   press(): void {
-    if (this.pressed) return;
-    this.pressed = true;
+    if (this.isPressed) return;
+    this.isPressed = true;
     this.isAnswered = false;
     this.lostBefore = this.microphone.lostSeconds;
     this.speaker.hush();
     this.watch(this.microphone, true);
-    this.use();
+    this.openMicrophone();
   }
 
-  /** The button is let go. */
+  /** Handles the release of the button. */
   release(): void {
-    if (!this.pressed) return;
-    this.pressed = false;
-    this.ending = this.mode === "held";
+    if (!this.isPressed) return;
+    this.isPressed = false;
+    this.isFlushing = this.mode === "held";
     this.changed.emit();
     void this.microphone.flush().then(() => {
-      this.ending = false;
-      this.announce();
-      this.rest();
+      this.isFlushing = false;
+      this.sendMode();
+      this.scheduleClose();
     });
   }
 
-  /** Listens to all, or only while the button is held. */
+  /** Listens all the time, or only while the button is held. */
   setOpen(open: boolean): void {
-    if (open === this.listening) return;
-    this.listening = open;
+    if (open === this.isListening) return;
+    this.isListening = open;
     this.watch(this.microphone, true);
-    if (open) this.use();
+    if (open) this.openMicrophone();
     else {
-      this.announce();
-      this.rest();
+      this.sendMode();
+      this.scheduleClose();
     }
     this.changed.emit();
   }
 
-  /** Releases the microphone, for example when the page is hidden. */
-  letGo(): void {
+  /** Releases the button and the microphone, for example when the page is hidden. */
+  releaseMicrophone(): void {
     this.release();
-    if (!this.listening) this.microphone.close();
+    if (!this.isListening) this.microphone.close();
   }
 
-  /** Whether the current speech is a recording of a word, not a command. */
+  /** Whether the current speech is a recording of a word rather than a command. */
   get recording(): boolean {
-    return this.taking;
+    return this.isRecordingWord;
   }
 
-  /** Has the microphone opened for a recording; `begun` is called before the first sound is sent, false gives it up. */
+  /**
+   * Opens the microphone for a recording; `begun` is called before the first sound is sent, and cancels the recording
+   * by returning false.
+   */
   async record(begun: () => boolean): Promise<boolean> {
     this.speaker.hush();
     this.setOpen(false);
     clearTimeout(this.timer);
     const opened = await this.microphone.open();
     this.lostBefore = this.microphone.lostSeconds;
-    this.announce();
-    this.taking = opened && begun();
-    if (!this.taking) this.rest();
-    return this.taking;
+    this.sendMode();
+    this.isRecordingWord = opened && begun();
+    if (!this.isRecordingWord) this.scheduleClose();
+    return this.isRecordingWord;
   }
 
-  /** Ends the recording; its last sound is sent when this resolves. */
+  /** Ends the recording; resolves once its last sound is sent. */
   async endRecord(): Promise<void> {
     await this.microphone.flush();
-    this.taking = false;
-    this.rest();
+    this.isRecordingWord = false;
+    this.scheduleClose();
   }
 
-  say(text: string): void {
+  sendCommand(text: string): void {
     this.connection.send({ type: "say_command", text });
   }
 
@@ -203,30 +212,30 @@ export class VoiceState {
     this.conversed.emit();
   }
 
-  /** For `window.linkwright`. */
+  /** Returns the state for `window.linkwright`. */
   inspect(): object {
-    const { history, partial, told, microphone, mode, recording } = this;
+    const { history, partial, serverState, microphone, mode, recording } = this;
     const { problem, isOpen, peak } = microphone;
-    return { mode, recording, problem, isOpen, peak, partial, told, history: history.map((each) => ({ ...each })) };
+    return { mode, recording, problem, isOpen, peak, partial, serverState, history: history.map((each) => ({ ...each })) };
   }
 
-  private use(): void {
+  private openMicrophone(): void {
     clearTimeout(this.timer);
     void this.microphone.open().then((opened) => {
-      if (opened) this.rest();
+      if (opened) this.scheduleClose();
     });
-    this.announce();
+    this.sendMode();
     this.changed.emit();
   }
 
-  /** Closes the microphone after a while, if it is not needed. */
-  private rest(): void {
+  /** Closes the microphone after a while, unless it is needed. */
+  private scheduleClose(): void {
     clearTimeout(this.timer);
-    if (this.pressed || this.listening || this.taking || !this.microphone.isOpen) return;
-    this.timer = window.setTimeout(() => this.microphone.close(), WARM_MS);
+    if (this.isPressed || this.isListening || this.isRecordingWord || !this.microphone.isOpen) return;
+    this.timer = window.setTimeout(() => this.microphone.close(), OPEN_AFTER_USE_MS);
   }
 
-  private announce(): void {
+  private sendMode(): void {
     const mode = this.wanted;
     if (mode === this.mode) return;
     this.mode = mode;
@@ -235,27 +244,27 @@ export class VoiceState {
 
   private get wanted(): TalkMode {
     if (!this.microphone.isOpen) return "off";
-    if (this.pressed || this.ending) return "held";
-    return this.listening ? "open" : "ready";
+    if (this.isPressed || this.isFlushing) return "held";
+    return this.isListening ? "open" : "ready";
   }
 
   private send(samples: Int16Array): void {
     this.changed.emit();
     const lost = this.microphone.lostSeconds - this.lostUntil;
     this.lostUntil = this.microphone.lostSeconds;
-    if (this.mode !== "held" && this.mode !== "open" && !this.taking) return;
+    if (this.mode !== "held" && this.mode !== "open" && !this.isRecordingWord) return;
     // The page's own speech is not a command.
     if (this.mode === "open" && this.speaker.speaking) return;
     this.connection.sendBytes(soundFrame(samples, lost));
   }
 
-  private take(part: ConversationPart, text: string): void {
+  private addText(part: ConversationPart, text: string): void {
     if (part === "response") this.isAnswered = true;
     if (part === "partial") this.partial = text;
     else {
       if (part === "text") this.partial = "";
       if (text !== "") this.history.push({ part, text });
-      if (this.history.length > MOST_KEPT) this.history.shift();
+      if (this.history.length > MAX_HISTORY) this.history.shift();
       if (part === "response") this.speaker.speak(text);
     }
     this.conversed.emit();

@@ -3,29 +3,29 @@ import type { EnrolledWord, TakeJudged } from "../../protocol";
 import { Signal } from "../../signal";
 import type { VoiceState } from "./voice";
 
-/** How long a recording continues after the button was released: the end of a word is soft. */
-const TAIL_MS = 300;
+/** ms for which a recording continues after the button was released, because the end of a word is soft. */
+const EXTRA_MS = 300;
 
 /** The words that the user enrols. */
 export class WordsState {
   readonly changed = new Signal();
-  /** The text of the file arrived. */
-  readonly fileCame = new Signal<string>();
-  /** The user requested to record the words at their present place. */
-  readonly enrolWanted = new Signal();
+  /** The text of the words file arrived. */
+  readonly fileArrived = new Signal<string>();
+  /** The user asked to enrol the words at their current place. */
+  readonly enrolRequested = new Signal();
   words: readonly EnrolledWord[] = [];
-  /** The number of recordings for each word. */
+  /** The number of recordings needed for each word. */
   enough = 3;
   file = "";
   problem: string | null = null;
   /** The result of the last recording of each word. */
   readonly judged = new Map<string, TakeJudged>();
-  /** The word that is being recorded. */
+  /** The word being recorded. */
   recording: string | null = null;
-  /** How often each word was recorded since the user began to enrol at their present place; null while they do not. */
-  here: Map<string, number> | null = null;
-  /** Words that have a name but no recording yet. */
-  private readonly named = new Set<string>();
+  /** The number of recordings of each word at the user's current place; null while the user does not enrol there. */
+  takesHere: Map<string, number> | null = null;
+  /** Words that were added but have no recording yet. */
+  private readonly newWords = new Set<string>();
   private watched = false;
 
   constructor(
@@ -34,15 +34,15 @@ export class WordsState {
   ) {
     connection.on("voice_words", ({ words, enough, file, problem }) => {
       Object.assign(this, { words, enough, file, problem });
-      for (const { name } of words) this.named.delete(name);
+      for (const { name } of words) this.newWords.delete(name);
       this.changed.emit();
     });
     connection.on("take_judged", (judged) => {
       this.judged.set(judged.name, judged);
-      if (judged.code === null) this.here?.set(judged.name, (this.here.get(judged.name) ?? 0) + 1);
+      if (judged.code === null) this.takesHere?.set(judged.name, (this.takesHere.get(judged.name) ?? 0) + 1);
       this.changed.emit();
     });
-    connection.on("voice_words_file", ({ text }) => this.fileCame.emit(text));
+    connection.on("voice_words_file", ({ text }) => this.fileArrived.emit(text));
     connection.on("hello", () => {
       if (this.watched) connection.send({ type: "watch_words", watched: true });
     });
@@ -50,17 +50,17 @@ export class WordsState {
 
   /** All words, including those without a recording. */
   get all(): readonly EnrolledWord[] {
-    return [...this.words, ...[...this.named].map((name) => ({ name, takes: 0 }))];
+    return [...this.words, ...[...this.newWords].map((name) => ({ name, takes: 0 }))];
   }
 
-  /** The words that are still to be recorded at the user's present place. */
+  /** The words still to be recorded at the user's current place. */
   get missingHere(): readonly EnrolledWord[] {
-    return this.all.filter(({ name }) => (this.here?.get(name) ?? 0) < this.enough);
+    return this.all.filter(({ name }) => (this.takesHere?.get(name) ?? 0) < this.enough);
   }
 
-  /** Begins or ends the recording of words at the user's present place. */
+  /** Starts or ends enrolment at the user's current place. */
   enrolHere(begun: boolean): void {
-    this.here = begun ? new Map<string, number>() : null;
+    this.takesHere = begun ? new Map<string, number>() : null;
     this.changed.emit();
   }
 
@@ -71,15 +71,15 @@ export class WordsState {
   }
 
   /** Adds a word to the list, to be recorded. */
-  name(name: string): void {
+  addWord(name: string): void {
     const trimmed = name.trim();
     if (trimmed === "" || this.all.some((word) => word.name === trimmed)) return;
-    this.named.add(trimmed);
+    this.newWords.add(trimmed);
     this.changed.emit();
   }
 
-  /** Begins the recording of a word. */
-  async begin(name: string): Promise<void> {
+  /** Starts the recording of a word. */
+  async startTake(name: string): Promise<void> {
     if (this.recording !== null) return;
     this.recording = name;
     this.judged.delete(name); // later judgements are about this recording
@@ -93,7 +93,7 @@ export class WordsState {
   }
 
   /** Ends the recording. */
-  end(): void {
+  endTake(): void {
     if (this.recording === null) return;
     if (!this.voice.recording) {
       this.stop();
@@ -104,17 +104,17 @@ export class WordsState {
         this.connection.send({ type: "end_take", has_gaps: this.voice.hasGaps });
         this.stop();
       });
-    }, TAIL_MS);
+    }, EXTRA_MS);
   }
 
   remove(name: string): void {
     this.judged.delete(name);
-    if (this.named.delete(name)) this.changed.emit();
+    if (this.newWords.delete(name)) this.changed.emit();
     else this.connection.send({ type: "remove_word", name });
   }
 
   rename(name: string, to: string): void {
-    if (this.named.delete(name)) this.name(to);
+    if (this.newWords.delete(name)) this.addWord(to);
     else this.connection.send({ type: "rename_word", name, new_name: to });
   }
 
@@ -122,11 +122,11 @@ export class WordsState {
     this.connection.send({ type: "import_words", text });
   }
 
-  askFile(): void {
+  requestFile(): void {
     this.connection.send({ type: "ask_words_file" });
   }
 
-  /** Whether the word can be recorded now: its button is held and the microphone is open. */
+  /** Whether the word can be spoken now: its button is held and the microphone is open. */
   get isHearing(): boolean {
     return this.recording !== null && this.voice.recording;
   }

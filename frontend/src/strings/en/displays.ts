@@ -21,7 +21,7 @@ const about: Readonly<Record<DisplayIcon, string>> = {
   MotionPlanning: "MoveIt: the scene, planned motions, and their start and goal states.",
   OccupancyGrid: "An octomap, as boxes.",
   Odometry: "The poses of a robot over time, as arrows or axes, with their covariance.",
-  ParticleCloud: "The poses that amcl considers possible; likelier ones are larger.",
+  ParticleCloud: "The poses that amcl considers possible; more likely ones are larger.",
   PlanningScene: "MoveIt: the robot, attached objects, and its surroundings.",
   Path: "A planned path.",
   PointCloud: "The points of a cloud, in the older message type.",
@@ -79,6 +79,6 @@ export const displays = {
   noTopics: "No topic has a publisher yet.",
   otherDescription: "Another node now publishes the description",
   notFound: "Nothing found.",
-  asking: "Asking for topics…",
+  asking: "Requesting topics…",
   topics: "Known topics",
 };

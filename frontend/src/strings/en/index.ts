@@ -16,7 +16,7 @@ import { tools } from "./tools";
 import { values } from "./values";
 import { voice } from "./voice";
 
-/** Every word of the page that does not come from the server. */
+/** All texts of the page that do not come from the server. */
 export const en = {
   panels: {
     ...description.panels,
@@ -82,7 +82,7 @@ export const en = {
     none: "No problems found.",
     hint: "Hint",
     note: "Note",
-    lastGood: "The last valid robot stays until this is fixed.",
+    lastGood: "The last valid robot remains until this is fixed.",
     show: "Show",
     close: "Close this message",
     showDisplay: "Show it in the Displays panel",
@@ -140,7 +140,7 @@ export const en = {
     reconnecting: "Connection lost, trying again",
     ended: "The program has ended",
     endedHint: "Start it again in the same way, and this page reconnects.",
-    refused: "Another program runs at this address now",
+    refused: "Another program is running at this address now",
     refusedHint: "Open the address that it printed.",
     outdated: "This page and the program have different versions. Close the page and open the program's address again.",
   },

@@ -1,4 +1,4 @@
-/** Words of the live panels. */
+/** Texts of the live panels. */
 export const monitor = {
   panels: {
     plot: "Plots",
@@ -15,16 +15,16 @@ export const monitor = {
   clear: "Clear",
   plot: {
     addPlot: "Plot",
-    addPlotHint: "Add a diagram",
-    removePlot: "Remove this diagram",
+    addPlotHint: "Add a plot",
+    removePlot: "Remove this plot",
     addSeries: "Add a series",
     removeSeries: (name: string): string => `Remove ${name}`,
-    pauseHint: "Freeze the diagram; values are still collected. Drag over a diagram to freeze that part.",
+    pauseHint: "Freeze the plot; values are still collected. Drag over a plot to freeze that part.",
     resumeHint: "Follow the newest values",
     clearHint: "Delete all values",
-    csvHintOf: "Save the values of this diagram as a file",
+    csvHintOf: "Save the values of this plot as a file",
     window: "Window",
-    windowHint: "Time span of the diagram",
+    windowHint: "Time span of the plot",
     seconds: (count: number): string => (count < 60 ? `${count} s` : `${count / 60} min`),
     source: "Time",
     sources: { received: "received", stamp: "header stamp" },
@@ -36,11 +36,11 @@ export const monitor = {
     highest: "Highest value",
     choose: "Topic and field, such as /odom.twist.twist.linear.x",
     noTopics: "There is no such topic.",
-    asking: "Asking for topics…",
-    noFields: "No number has this name.",
+    asking: "Requesting topics…",
+    noFields: "No numeric field has this name.",
     waiting: "Waiting for values",
-    empty: "Add a series to plot a number of any topic.",
-    diagram: "Diagram",
+    empty: "Add a series to plot a numeric field of any topic.",
+    diagram: "Plot",
   },
   topics: {
     name: "Topic",
@@ -52,7 +52,7 @@ export const monitor = {
     rate: "Rate",
     bandwidth: "Bandwidth",
     measure: (topic: string): string => `Measure ${topic}`,
-    measureHint: "Ticked topics are measured; Linkwright subscribes to them",
+    measureHint: "Linkwright subscribes to ticked topics to measure them",
     show: "Show it in the scene: add the display for its type",
     open: (topic: string): string => `Last message of ${topic}`,
     hidden: "Hidden",
@@ -87,9 +87,9 @@ export const monitor = {
   parameters: {
     nodes: "Nodes",
     choose: "Choose a node to see its parameters.",
-    none: "This node has no such parameters.",
+    none: "No parameter of this node matches.",
     noNodes: "No nodes.",
-    asking: "Asking the node",
+    asking: "Requesting parameters…",
     dump: "YAML",
     dumpHint: "Save all parameters of the node as a parameter file",
     readOnly: "read-only",
@@ -156,7 +156,7 @@ export const monitor = {
       startup: "Configure and activate the nodes of nav2",
       pause: "Deactivate the nodes of nav2",
       resume: "Activate the nodes of nav2 again",
-      reset: "Cancel the goal and bring the nodes of nav2 down",
+      reset: "Cancel the goal and shut down the nodes of nav2",
       cancel: "Cancel the goal",
     },
     none: "–",
@@ -187,7 +187,7 @@ export const monitor = {
     keys: "Keys: I J K L U O M , . or arrows or WASD; Shift moves sideways; T B up and down; Q Z faster and slower.",
     listeners: (count: number, kind: string): string =>
       count === 0 ? `no subscribers (${kind})` : `subscribers: ${count} (${kind})`,
-    active: "Focus: keys drive",
+    active: "Keys drive the robot",
     inactive: "Click the pad to drive with keys",
   },
 };

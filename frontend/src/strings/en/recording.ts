@@ -38,5 +38,5 @@ export const recording = {
   broken: "The connection to the program was lost.",
   gone: "The recording is no longer open",
   goneHint: "A recording closes a minute after its last page. Open it again, or drop it here.",
-  key: "Last minutes: mark the start and the end of a part",
+  key: "History: mark the start and the end of a part",
 };

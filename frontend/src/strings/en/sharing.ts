@@ -6,7 +6,7 @@ interface ReducedImage {
   quality: number;
 }
 
-/** Export, screenshots, videos; and the data that a slow line leaves out. */
+/** Export, screenshots, videos, and the notice about reduced data on a slow connection. */
 export const sharing = {
   slow: {
     line: "The connection is slow",

@@ -12,7 +12,7 @@ const edits: Readonly<Record<EditName["kind"], (name: string) => string>> = {
   group: (name) => `grouping as ${name}`,
 };
 
-/** Menus, dialogs, what concerns the whole page. */
+/** Menus, dialogs, and other texts of the whole page. */
 export const shell = {
   ok: "OK",
   cancel: "Cancel",
@@ -38,14 +38,14 @@ export const shell = {
   untitled: "untitled",
   unsaved: "unsaved changes",
   unsavedTitle: "Unsaved changes",
-  unsavedQuestion: (name: string): string => `${name} has changes that are not saved. They would be lost.`,
+  unsavedQuestion: (name: string): string => `${name} has unsaved changes, which would be lost.`,
   saveFirst: "Save",
   discard: "Don't save",
-  revertQuestion: "Everything changed since the file was saved will be lost.",
+  revertQuestion: "All changes since the file was saved will be lost.",
   exists: "The file already exists",
   existsQuestion: (path: string): string => `${path} already exists. Replace it?`,
   changedOnDisk: "The file was changed",
-  changedOnDiskQuestion: (path: string): string => `Another program changed ${path} since it was read. Replace it?`,
+  changedOnDiskQuestion: (path: string): string => `Another program has changed ${path} since it was read. Replace it?`,
   replace: "Replace",
   refused: "That did not work",
   tooLarge: (name: string): string => `${name} is too large to be a configuration.`,

@@ -1,4 +1,4 @@
-/** The simulation: its bar, and what is done to its models. */
+/** The simulation: its bar, and the actions on its models. */
 export const simulation = {
   label: "Simulation",
   play: "Resume the simulation",

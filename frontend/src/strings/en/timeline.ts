@@ -12,7 +12,7 @@ export const timeline = {
   live: "Live: follow the newest messages",
   liveShort: "Live",
   minutes: "Time within the last minutes",
-  kept: (kept: string, most: string) => `kept: ${kept} of ${most} MB`,
+  kept: (kept: string, most: string) => `stored: ${kept} of ${most} MB`,
   more: "The oldest messages are dropped. To keep more, start the program with --history SIZE, such as --history 4GB.",
   keys: "Recording, last minutes: play, pause; step",
 };

@@ -1,4 +1,4 @@
-/** Views, tools, selection and time. What RViz says in its status line is said as RViz does. */
+/** Views, tools, selection and time. Hints of the status line have RViz's wording where RViz has them. */
 export const tools = {
   panels: {
     "tool-properties": "Tool Properties",
@@ -13,7 +13,7 @@ export const tools = {
     zeroHint: "The starting view of this type (Z)",
     resetHint: "The view of the configuration file; without one, a view of the whole robot (Shift+Z)",
     save: "Save",
-    saveHint: "Keep the current view in the list",
+    saveHint: "Add the current view to the list",
     remove: "Remove",
     removeHint: "Remove the selected view from the list (Delete)",
     rename: "Rename",
@@ -36,7 +36,7 @@ export const tools = {
     remove: "Remove a tool",
     fit: "Fit",
     fitHint: "Show the whole robot or the selection",
-    help: "Keys (?)",
+    help: "Keyboard shortcuts (?)",
     withKey: (name: string, key: string): string => `${name} (${key.toUpperCase()})`,
     unknown: (cls: string): string => `${cls} stays in the file, but Linkwright does not have this tool`,
     nothing: "None of these tools has properties.",
@@ -52,7 +52,7 @@ export const tools = {
       "rviz_default_plugins/PublishPoint": "Publish Point",
     },
     hints: {
-      select: "Click and drag to select objects on the screen.  Shift: add.  Ctrl: take away.  Alt: camera.  F: focus.",
+      select: "Click and drag to select objects on the screen.  Shift: add.  Ctrl: remove.  Alt: camera.  F: focus.",
       measure: "Click on two points to measure their distance.  Right-click to reset.",
       nothingThere: "There is nothing at this point: click on an object.",
       pose: "Click and drag mouse to set position/orientation.",
@@ -81,14 +81,14 @@ export const tools = {
     wall: "Wall Time",
     wallElapsed: "Wall Elapsed",
     reset: "Reset",
-    resetHint: "Clear the messages that displays keep, and restart the clocks (R)",
+    resetHint: "Clear the messages that displays have stored, and restart the clocks (R)",
   },
   transformation: {
     hint: "How data is transformed into the Fixed Frame.",
     tf: "TF",
   },
   keys: {
-    title: "Keys",
+    title: "Keyboard shortcuts",
     close: "Close (Esc)",
     toolsTitle: "Tools",
     toolsNote: "Press the key again, or Esc, for the default tool",
@@ -98,13 +98,13 @@ export const tools = {
     focus: "Focus on the object under the pointer; without one, fit",
     zero: "Starting view of this type",
     resetView: "View of the configuration file",
-    turn: "Turn the camera",
+    turn: "Rotate the camera",
     move: "Move the camera",
     zoom: "Zoom",
     resetTime: "Reset: clear displays",
     fullscreen: "3D view in full screen",
     escape: "Default tool, then clear the selection",
-    sheet: "This sheet",
+    sheet: "Show these shortcuts",
     rows: "Move between rows",
     open: "Open and close a row",
     edit: "Edit a value",

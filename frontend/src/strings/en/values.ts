@@ -1,2 +1,2 @@
-/** The shown names of property values, by RViz's words in the file. */
+/** The names shown for property values, by the values in RViz's files. */
 export const values: Readonly<Record<string, string>> = {};

@@ -1,10 +1,10 @@
-/** Words of the Voice panel. */
+/** Texts of the Voice panel. */
 export const voice = {
   panel: "Voice",
   talk: "Talk to the robot",
   talkHint: "Hold to talk to the robot (V)",
   talkWithKey: "Hold to talk (V)",
-  talkKey: "hold: talk to the robot",
+  talkKey: "Hold: talk to the robot",
   open: "Open listening",
   openHint: "Listen all the time, not only while the button is held. The speech of others may then be taken as a command.",
   level: "Level of the microphone",
@@ -60,7 +60,7 @@ export const voice = {
     name: "Word",
     remove: (name: string): string => `Delete ${name}`,
     importFile: "Import",
-    importHint: "Import the words of a file",
+    importHint: "Import the words from a file",
     exportFile: "Export",
     exportHint: "Save the words as a file",
     keptIn: (file: string): string => `Stored in ${file}`,

@@ -1,6 +1,6 @@
 import type { meshes as english } from "../en/meshes";
 
-/** What is wrong with mesh files, as parts of a sentence, and how far their loading is. */
+/** The faults of mesh files, as parts of a sentence, and the progress of loading. */
 export const meshes: typeof english = {
   empty: "文件是空的",
   gone: "服务器上没有这个文件（404）",

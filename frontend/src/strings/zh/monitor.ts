@@ -1,6 +1,6 @@
 import type { Strings } from "../en";
 
-/** Words of the live panels. */
+/** 实时数据面板 */
 export const monitor: Strings["monitor"] = {
   panels: {
     plot: "曲线",
@@ -42,7 +42,7 @@ export const monitor: Strings["monitor"] = {
     noFields: "没有这样的数值字段。",
     waiting: "等待数值",
     empty: "添加曲线即可绘制任意话题中的数值。",
-    diagram: "图",
+    diagram: "曲线图",
   },
   topics: {
     name: "话题",
@@ -91,7 +91,7 @@ export const monitor: Strings["monitor"] = {
     choose: "选择一个节点以查看其参数。",
     none: "该节点没有这样的参数。",
     noNodes: "没有节点。",
-    asking: "正在询问节点",
+    asking: "正在读取参数……",
     dump: "YAML",
     dumpHint: "将该节点的全部参数保存为参数文件",
     readOnly: "只读",

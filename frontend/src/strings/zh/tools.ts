@@ -33,7 +33,7 @@ export const tools: typeof english = {
     remove: "移除工具",
     fit: "适应视图",
     fitHint: "显示整个机器人，或选中的全部内容",
-    help: "按键（?）",
+    help: "快捷键（?）",
     withKey: (name, key) => `${name}（${key.toUpperCase()}）`,
     unknown: (cls) => `文件中保留了 ${cls}，但本程序没有此工具`,
     nothing: "这些工具都没有设置。",
@@ -79,7 +79,7 @@ export const tools: typeof english = {
   },
   transformation: { hint: "数据如何变换到固定坐标系。", tf: "TF" },
   keys: {
-    title: "按键",
+    title: "快捷键",
     close: "关闭（Esc）",
     toolsTitle: "工具",
     toolsNote: "再按一次同一个键，或按 Esc：回到默认工具",

@@ -2,22 +2,22 @@ import type { BufferAttribute, BufferGeometry, InterleavedBufferAttribute } from
 import { strings } from "../../strings";
 import { countText, MeshError } from "./mesh-error";
 
-/** Vertices of a geometry that are not finite numbers, and its triangles. */
-export interface Unreal {
+/** The number of vertices that are not finite, and of the triangles with such vertices. */
+export interface NonFiniteCounts {
   vertices: number;
-  /** Those with such a vertex. */
+  /** The triangles with such a vertex. */
   triangles: number;
-  /** All of the geometry. */
+  /** All triangles of the geometry. */
   ofTriangles: number;
 }
 
 type Positions = BufferAttribute | InterleavedBufferAttribute;
 
 /**
- * Makes points of triangles with a vertex that is NaN or infinite: nothing is drawn of them, and bounds hold. The
- * geometry's groups stay.
+ * Collapses triangles with a vertex that is NaN or infinite to a point, so that they are not drawn and bounds are
+ * valid. The geometry's groups stay.
  */
-export function collapseUnreal(geometry: BufferGeometry): Unreal {
+export function collapseNonFinite(geometry: BufferGeometry): NonFiniteCounts {
   const positions = geometry.getAttribute("position") as Positions | undefined;
   if (!positions) return { vertices: 0, triangles: 0, ofTriangles: 0 };
   const { index } = geometry;
@@ -46,12 +46,12 @@ export function collapseUnreal(geometry: BufferGeometry): Unreal {
 }
 
 /**
- * The text about vertices that are not numbers, or null.
+ * Returns the message about vertices that are not finite, or null.
  *
- * @throws MeshError when no triangle is left.
+ * @throws MeshError if no triangle is left.
  */
-export function unrealProblem(found: readonly Unreal[]): string | null {
-  const sum = (what: keyof Unreal): number => found.reduce((total, each) => total + each[what], 0);
+export function nonFiniteProblem(found: readonly NonFiniteCounts[]): string | null {
+  const sum = (what: keyof NonFiniteCounts): number => found.reduce((total, each) => total + each[what], 0);
   const [vertices, triangles] = [sum("vertices"), sum("triangles")];
   if (triangles > 0 && triangles === sum("ofTriangles")) throw new MeshError(strings.meshes.onlyNotNumbers(countText(vertices)));
   return vertices + triangles > 0 ? strings.meshes.notNumbers(countText(vertices), countText(triangles)) : null;

@@ -1,14 +1,14 @@
 import { expect, it, vi } from "vitest";
 import type { DisplayData } from "../src/connection/data";
-import { causeOf } from "../src/panels/over-scene/line-notice";
+import { causeOf } from "../src/panels/over-scene/slow-notice";
 import { Signal } from "../src/signal";
 import type { DisplayDataStore } from "../src/state/display-data";
-import { SlowLine } from "../src/state/slow-line";
+import { SlowConnection } from "../src/state/slow-connection";
 
 vi.mock("../src/strings", () => ({ strings: {} }));
 
 function store() {
-  return { received: new Signal<DisplayData>(), forgotten: new Signal<{ display: string; key: string | null }>() };
+  return { received: new Signal<DisplayData>(), removed: new Signal<{ display: string; key: string | null }>() };
 }
 
 function cloud(step: number): DisplayData {
@@ -16,10 +16,10 @@ function cloud(step: number): DisplayData {
   return { display: "cloud", key: "", frame: "", stamp: 0, pose: null, content };
 }
 
-it("tells what is thinned and how often it comes, until it comes whole again", () => {
+it("reports reduced content and its rate until complete content arrives", () => {
   const data = store();
   let now = 0;
-  const line = new SlowLine(data as unknown as DisplayDataStore, () => now);
+  const line = new SlowConnection(data as unknown as DisplayDataStore, () => now);
   const changed = vi.fn();
   line.changed.on(changed);
   data.received.emit(cloud(1));
@@ -31,18 +31,18 @@ it("tells what is thinned and how often it comes, until it comes whole again", (
   expect(line.reduced).toEqual([]);
 });
 
-it("forgets what is drawn no more", () => {
+it("drops displays that are no longer drawn", () => {
   const data = store();
-  const line = new SlowLine(data as unknown as DisplayDataStore, () => 0);
+  const line = new SlowConnection(data as unknown as DisplayDataStore, () => 0);
   data.received.emit(cloud(2));
   expect(line.reduced[0]?.rate).toBeNull();
-  data.forgotten.emit({ display: "cloud", key: null });
+  data.removed.emit({ display: "cloud", key: null });
   expect(line.reduced).toEqual([]);
 });
 
-it("does not tell of images that nobody sees a difference in", () => {
+it("does not report images with invisible loss", () => {
   const data = store();
-  const line = new SlowLine(data as unknown as DisplayDataStore, () => 0);
+  const line = new SlowConnection(data as unknown as DisplayDataStore, () => 0);
   const image = (quality: number): DisplayData["content"] => ({
     kind: "image_frame", width: 64, height: 48, columns: 64, rows: 48, encoding: "file", data: new Uint8Array(9), camera: null, quality,
   });

@@ -2,10 +2,10 @@ import type { Connection } from "../connection/connection";
 import { tokenOf, type Tokens } from "../connection/tokens";
 import { button, h } from "../dom";
 import { strings } from "../strings";
-import { Logo } from "../widgets/logo";
+import { logo } from "../widgets/logo";
 
-/** Shown over everything while the page has no token that the program knows: where to find it, and a field for it. */
-export class Door {
+/** The screen over everything while the page has no valid token: where to find the token, and a field for it. */
+export class TokenScreen {
   readonly element: HTMLElement;
   private readonly field = h("input", { class: "field wide", aria: { label: strings.door.label } });
   private readonly problem = h("p", { class: "problem", role: "alert" });
@@ -20,10 +20,10 @@ export class Door {
     this.field.placeholder = `${location.origin}/?token=…`;
     this.field.spellcheck = false;
     this.field.autocomplete = "off";
-    const form = h("form", {}, this.field, button(words.open, () => this.enter(), "tool framed primary", words.open));
+    const form = h("form", {}, this.field, button(words.open, () => this.submit(), "tool framed primary", words.open));
     form.addEventListener("submit", (event) => {
       event.preventDefault();
-      this.enter();
+      this.submit();
     });
     this.element = h(
       "div",
@@ -31,7 +31,7 @@ export class Door {
       h(
         "div",
         { class: "door-box" },
-        h("header", {}, Logo(), h("h1", {}, words.title)),
+        h("header", {}, logo(), h("h1", {}, words.title)),
         h("p", {}, words.printed),
         h("code", {}, `Viewer: ${location.origin}/?token=…`),
         h("p", {}, words.hint),
@@ -50,7 +50,7 @@ export class Door {
       this.wasOpen = true;
       this.show(false);
     }
-    // A page that was connected once keeps showing its content, with a notice.
+    // A page that was connected before keeps showing its content, with a notice.
     if (state !== "refused" || this.wasOpen) return;
     if (this.tokens.current !== null) this.problem.textContent = strings.door.unknown;
     this.show(true);
@@ -63,13 +63,13 @@ export class Door {
     if (shown) this.field.focus();
   }
 
-  private enter(): void {
+  private submit(): void {
     const token = tokenOf(this.field.value);
     this.problem.textContent = token === null ? strings.door.noToken : "";
     if (token === null) {
       this.field.focus();
       return;
     }
-    this.connection.show(token);
+    this.connection.connectWith(token);
   }
 }

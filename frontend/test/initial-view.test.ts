@@ -1,7 +1,7 @@
 import { Box3, Matrix4, Vector3, type Raycaster } from "three";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { lookFirst, type LookedAt } from "../src/scene/first-look";
+import { setInitialView, type InitialViewWorld } from "../src/scene/initial-view";
 import { Session } from "../src/state/session";
 import type { ViewState } from "../src/state/view";
 import { distanceBetween, type Vector } from "../src/state/views/vector";
@@ -11,7 +11,7 @@ const SIZE = { width: 800, height: 600 };
 const ROBOT = new Box3(new Vector3(4, -0.2, 0), new Vector3(4.4, 0.2, 0.3));
 const HALL = new Box3(new Vector3(-20, -10, 0), new Vector3(20, 10, 3));
 
-/** The view of a page whose server says whether somebody has put the camera anywhere. */
+/** The view of a page whose server says whether a user has placed the camera. */
 function viewOf(isFree: boolean): ViewState {
   const connection = new Connection("ws://localhost/ws");
   vi.spyOn(connection, "send").mockImplementation(() => true);
@@ -31,8 +31,8 @@ afterEach(() => {
   vi.unstubAllGlobals();
 });
 
-/** A hall with a robot, or without; a wall stands at each of these x, endless along y and as high as said. */
-class Hall implements LookedAt {
+/** A hall with or without a robot; at each of these x is a wall of this height, infinite along y. */
+class Hall implements InitialViewWorld {
   camera: Matrix4 | null = null;
   constructor(
     public hasRobots: boolean,
@@ -61,49 +61,49 @@ class Hall implements LookedAt {
   }
 }
 
-describe("the first look at a world", () => {
-  it("shows all of it until there is a robot, then that and what is around it, and stays", () => {
+describe("the initial view of a world", () => {
+  it("shows the whole world until there is a robot, then the robot with its surroundings, and stays there", () => {
     const view = viewOf(true);
     const hall = new Hall(false);
-    lookFirst(hall, view, SIZE);
+    setInitialView(hall, view, SIZE);
     expect(view.camera.focal).toEqual([0, 0, 1.5]);
     expect(view.values["Distance"]).toBeGreaterThan(40);
     hall.hasRobots = true;
-    lookFirst(hall, view, SIZE);
+    setInitialView(hall, view, SIZE);
     expect(view.camera.focal?.[0]).toBeCloseTo(4.2);
     expect(view.values["Distance"]).toBeGreaterThan(3);
     expect(view.values["Distance"]).toBeLessThan(6);
     expect(view.values["Pitch"]).toBe(0.5);
     view.update({ Distance: 1 });
-    lookFirst(hall, view, SIZE);
+    setInitialView(hall, view, SIZE);
     expect(view.values["Distance"]).toBe(1);
   });
 
-  it("shows all of it, once, where the robot has fallen out of it", () => {
+  it("shows the whole world, once, if the robot has fallen out of it", () => {
     const view = viewOf(true);
     const hall = new Hall(true);
     hall.fallen = true;
-    lookFirst(hall, view, SIZE);
+    setInitialView(hall, view, SIZE);
     expect(view.camera.focal).toEqual([0, 0, 1.5]);
     hall.fallen = false;
-    lookFirst(hall, view, SIZE);
+    setInitialView(hall, view, SIZE);
     expect(view.camera.focal).toEqual([0, 0, 1.5]);
   });
 
-  it("does not move a camera that a file, or somebody, has put somewhere", () => {
+  it("does not move a camera that a file or user has placed", () => {
     const chosen = viewOf(false);
-    lookFirst(new Hall(true), chosen, SIZE);
+    setInitialView(new Hall(true), chosen, SIZE);
     expect(chosen.values).toEqual(VALUES);
     const moved = viewOf(true);
     moved.update({ Yaw: 3 });
-    lookFirst(new Hall(true), moved, SIZE);
+    setInitialView(new Hall(true), moved, SIZE);
     expect(moved.values).toEqual({ ...VALUES, Yaw: 3 });
   });
 
-  it("looks from another side, from above or from nearer where walls hide the robot", () => {
+  it("chooses another side, a higher or a nearer viewpoint if walls hide the robot", () => {
     const from = (walls: readonly (readonly [number, number])[]): Vector => {
       const view = viewOf(true);
-      lookFirst(new Hall(true, walls), view, SIZE);
+      setInitialView(new Hall(true, walls), view, SIZE);
       return view.camera.position;
     };
     const free = from([]);
@@ -116,11 +116,11 @@ describe("the first look at a world", () => {
     expect(between[0]).toBeLessThan(4.7);
   });
 
-  it("looks as the world's file says, robots or not", () => {
+  it("is the camera of the world's file, with or without robots", () => {
     const view = viewOf(true);
     const hall = new Hall(true);
     hall.camera = new Matrix4().setPosition(1, 2, 3);
-    lookFirst(hall, view, SIZE);
+    setInitialView(hall, view, SIZE);
     expect(view.camera.position.map((each) => Math.round(each * 1e6) / 1e6)).toEqual([1, 2, 3]);
     expect(view.camera.focal?.map((each) => Math.round(each * 1e6) / 1e6)).toEqual([4, 2, 3]);
   });

@@ -3,12 +3,12 @@ import { PIECE_KIND } from "../protocol";
 const HEADER_BYTES = 16;
 
 /** Joins binary frames that arrive in pieces, as `pack_piece` of `page/protocol/message.py` cuts them. */
-export class Pieces {
+export class FrameAssembler {
   private number = 0;
   private whole = new Uint8Array();
 
-  /** Takes a piece; returns the frame that it completes, or null while pieces are missing. */
-  take(piece: ArrayBuffer): ArrayBuffer | null {
+  /** Adds a piece; returns the frame that it completes, or null while pieces are missing. */
+  add(piece: ArrayBuffer): ArrayBuffer | null {
     const header = new DataView(piece);
     const [number, offset, length] = [4, 8, 12].map((at) => header.getUint32(at, true)) as [number, number, number];
     if (offset === 0) [this.number, this.whole] = [number, new Uint8Array(length)];

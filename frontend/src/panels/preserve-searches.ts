@@ -1,12 +1,12 @@
-import type { Kept } from "../state/kept";
+import type { PageMemory } from "../state/page-memory";
 import type { Panel } from "./panel";
 
-/** Has what is searched for in panels outlive the page. */
-export function keepSearches(panels: readonly Panel[], kept: Kept): void {
+/** Preserves the search texts of panels across reloads of the page. */
+export function preserveSearches(panels: readonly Panel[], memory: PageMemory): void {
   for (const { id, element } of panels) {
     const fields = [...element.querySelectorAll<HTMLInputElement>("input[type=search]")];
     if (fields.length === 0) continue;
-    kept.part(`searches ${id}`, () => fields.map(({ value }) => value), (texts) => {
+    memory.preserve(`searches ${id}`, () => fields.map(({ value }) => value), (texts) => {
       for (const [i, field] of fields.entries()) {
         field.value = texts[i] ?? "";
         field.dispatchEvent(new Event("input"));

@@ -2,16 +2,16 @@ import { Vector3, type Camera } from "three";
 import type { ViewSize } from "../state/views/camera";
 import type { Span } from "../state/views/vector";
 
-/** The extent of a box on a canvas, pixels from its left and its upper edge. */
-export interface ScreenReach {
+/** The extent of a box on a canvas, in pixels from its left and its upper edge. */
+export interface ScreenExtent {
   readonly left: number;
   readonly right: number;
   readonly top: number;
   readonly bottom: number;
 }
 
-/** The extent of a box on a canvas; without bounds where a part of it is behind the camera. */
-export function reachOf({ min, max }: Span, camera: Camera, { width, height }: ViewSize): ScreenReach {
+/** Returns the extent of a box on a canvas; infinite if a part of the box is behind the camera. */
+export function extentOf({ min, max }: Span, camera: Camera, { width, height }: ViewSize): ScreenExtent {
   const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => {
     return new Vector3(...([0, 1, 2] as const).map((axis) => ((corner >> axis) & 1 ? max : min)[axis])).applyMatrix4(camera.matrixWorldInverse);
   });

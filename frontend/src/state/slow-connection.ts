@@ -2,12 +2,12 @@ import type { DisplayData } from "../connection/data";
 import { Signal } from "../signal";
 import type { DisplayDataStore } from "./display-data";
 
-/** Over so long contents are counted for their rate, ms. */
-const COUNTED_MS = 3000;
-/** A WebP of all pixels that is better than this looks as the image itself. */
-const NOTICED_QUALITY = 70;
+/** ms over which the rate of contents is measured. */
+const RATE_WINDOW_MS = 3000;
+/** A WebP image at full resolution with a higher quality than this looks like the original. */
+const VISIBLE_LOSS_QUALITY = 70;
 
-/** The way in which a display's content was reduced. */
+/** How the content of a display was reduced. */
 export type Reduction =
   | { kind: "points"; step: number }
   | { kind: "image"; columns: number; rows: number; width: number; height: number; quality: number };
@@ -15,18 +15,18 @@ export type Reduction =
 export interface Reduced {
   display: string;
   reduction: Reduction;
-  /** How often content comes, Hz; null if there was too little to measure. */
+  /** The rate of contents, Hz; null if there were too few to measure it. */
   rate: number | null;
 }
 
-/** The contents that the server sends in less detail because the line to this page is slow. */
-export class SlowLine {
+/** The contents that the server reduces because the connection to this page is slow. */
+export class SlowConnection {
   readonly changed = new Signal();
   private readonly known = new Map<string, { reduction: Reduction; times: number[] }>();
 
   constructor(data: DisplayDataStore, private readonly now: () => number = () => performance.now()) {
-    data.received.on((each) => this.take(each));
-    data.forgotten.on(({ display }) => {
+    data.received.on((each) => this.countContent(each));
+    data.removed.on(({ display }) => {
       if (this.known.delete(display)) this.changed.emit();
     });
   }
@@ -35,14 +35,14 @@ export class SlowLine {
     return [...this.known].map(([display, { reduction, times }]) => ({ display, reduction, rate: rateOf(times) }));
   }
 
-  private take({ display, content }: DisplayData): void {
+  private countContent({ display, content }: DisplayData): void {
     const reduction = reductionOf(content);
     if (reduction === null) {
       if (this.known.delete(display)) this.changed.emit();
       return;
     }
     const now = this.now();
-    const times = [...(this.known.get(display)?.times ?? []), now].filter((time) => now - time < COUNTED_MS);
+    const times = [...(this.known.get(display)?.times ?? []), now].filter((time) => now - time < RATE_WINDOW_MS);
     this.known.set(display, { reduction, times });
     this.changed.emit();
   }
@@ -50,13 +50,13 @@ export class SlowLine {
 
 function reductionOf(content: DisplayData["content"]): Reduction | null {
   if (content.kind === "cloud_points") return content.step > 1 ? { kind: "points", step: content.step } : null;
-  if (content.kind !== "image_frame" || content.quality === 0 || content.quality > NOTICED_QUALITY) return null;
+  if (content.kind !== "image_frame" || content.quality === 0 || content.quality > VISIBLE_LOSS_QUALITY) return null;
   const { columns, rows, width, height, quality } = content;
   return { kind: "image", columns, rows, width, height, quality };
 }
 
 function rateOf(times: readonly number[]): number | null {
   const [first, last] = [times[0], times.at(-1)];
-  if (first === undefined || last === undefined || last - first < COUNTED_MS / 10) return null;
+  if (first === undefined || last === undefined || last - first < RATE_WINDOW_MS / 10) return null;
   return ((times.length - 1) * 1000) / (last - first);
 }

@@ -1,0 +1,74 @@
+import { coalesced, h } from "../../dom";
+import type { Session } from "../../state/session";
+import type { Reduced } from "../../state/slow-connection";
+import type { SlowCause } from "../../state/slowness";
+import { strings } from "../../strings";
+
+/** ms for which the notice that the page is slow is shown. */
+const NOTICE_MS = 15_000;
+
+/**
+ * The notice over the scene while data is thinned: the data and its rate, the slow part, and the remedy. A notice that
+ * the page itself is slow is shown only once, for a while.
+ */
+export class SlowNotice {
+  readonly element = h("div", { class: "line-notice", role: "status" });
+  private slowPageNotice: "not yet" | "now" | "done" = "not yet";
+
+  constructor(private readonly session: Session) {
+    const update = coalesced(() => this.update());
+    session.slowConnection.changed.on(update);
+    session.slowness.changed.on(update);
+    session.displays.treeChanged.on(update);
+    session.drawingPace.changed.on(() => {
+      if (session.drawingPace.isSlow) this.showSlowPage(update);
+      update();
+    });
+    this.update();
+  }
+
+  private update(): void {
+    const { slowConnection, slowness, drawingPace } = this.session;
+    const { reduced } = slowConnection;
+    const words = strings.sharing;
+    const cause = causeOf(slowness.cause, this.slowPageNotice === "now", reduced.length);
+    this.element.hidden = reduced.length === 0 && this.slowPageNotice !== "now";
+    const lines = reduced.map((each) => h("div", {}, h("b", {}, this.name(each)), ` ${reductionText(each)}`));
+    if (this.slowPageNotice === "now" && drawingPace.software !== null) lines.push(h("div", {}, words.software(drawingPace.software)));
+    if (this.slowPageNotice === "now" && this.isLitAutomatically) lines.push(h("div", {}, words.plainLight));
+    this.element.replaceChildren(h("strong", {}, words.slow[cause]), h("div", {}, words.slowHints[cause]), ...lines);
+  }
+
+  /** Whether any light is set to Automatic, which means the camera's light where the page is slow. */
+  private get isLitAutomatically(): boolean {
+    const { globalOptions, displays } = this.session.displays;
+    return [globalOptions, ...displays.map(({ rows }) => rows)].some((rows) => rows.text("", "Light") === "Automatic");
+  }
+
+  private showSlowPage(update: () => void): void {
+    if (this.slowPageNotice !== "not yet") return;
+    this.slowPageNotice = "now";
+    setTimeout(() => {
+      this.slowPageNotice = "done";
+      update();
+    }, NOTICE_MS);
+  }
+
+  private name({ display }: Reduced): string {
+    return this.session.displays.find(display)?.name ?? display;
+  }
+}
+
+/**
+ * Returns the cause to show. The notice about a slow page stays for a while after the page has recovered, unless data
+ * is reduced.
+ */
+export function causeOf(cause: SlowCause, isNoticeShown: boolean, reduced: number): SlowCause {
+  return isNoticeShown && reduced === 0 ? "page" : cause;
+}
+
+function reductionText({ reduction, rate }: Reduced): string {
+  const words = strings.sharing;
+  const what = reduction.kind === "points" ? words.points(reduction.step) : words.image(reduction);
+  return rate === null ? what : `${what}, ${rate.toFixed(1)} Hz`;
+}
