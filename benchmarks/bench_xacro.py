@@ -23,7 +23,7 @@ from pathlib import Path
 from benchmarks import peers
 from benchmarks.measure import LINKWRIGHT, Row, commands, peak_memory, show, side_by_side
 from benchmarks.robots import SHIPPED, Model, collected, models
-from linkwright.xacro import expand, macros, sources
+from linkwright.xacro import cache, expand, macros
 from linkwright.xacro.expressions import expression, scope, template, yamldata, yamlnodes
 
 SMALL = SHIPPED / "urdf" / "mbot_base.xacro"
@@ -70,14 +70,14 @@ def theirs() -> Engine | None:
 
 def forget() -> None:
     """Drop everything that was kept from earlier expansions."""
-    for cache in (
-        sources.cache.values,
+    for values in (
+        cache.documents.values,
         template.templates,
         expression.expressions,
         yamldata.cache.values,
         yamlnodes.tags,
     ):
-        cache.clear()
+        values.clear()
     macros.parse_parameters.cache_clear()
     scope.number_or_boolean.cache_clear()
     gc.collect()

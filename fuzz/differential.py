@@ -16,7 +16,7 @@ from fuzz import descriptions
 from fuzz.__main__ import FOLDER
 from fuzz.choices import Choices
 from linkwright.diagnostics import LinkwrightError
-from linkwright.xacro import expand, sources
+from linkwright.xacro import cache, expand
 
 DELIBERATE = frozenset({"XAC309", "XAC311", "XAC601", "XAC602", "XAC603", "XAC604", "XAC605"})
 """Codes with which we stop on purpose where the other goes on: limits, and what is no XML."""
@@ -43,7 +43,7 @@ class Peer:
 
 def ours(path: str, arguments: dict[str, str], packages: dict[str, str]) -> dict[str, str]:
     """Our answer, in the same form, with the code of an error."""
-    sources.cache.values.clear()
+    cache.documents.values.clear()
     try:
         return {"text": str(expand(path, arguments, packages=packages))}
     except LinkwrightError as error:

@@ -28,7 +28,7 @@ from linkwright.sdf.saved import as_saved
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.urdf import read, save, to_gv, tree_text
 from linkwright.urdf.plaintext import parse_as_urdfdom
-from linkwright.xacro import expand, sources
+from linkwright.xacro import cache, expand
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.expressions.yamldata import YamlError, load
 from linkwright.xacro.faults import Fault
@@ -187,7 +187,7 @@ def _check_printable(error: LinkwrightError) -> None:
 def _save(path: Path, text: str) -> None:
     if _contents.get(path) != text:
         path.write_text(text, encoding="utf-8", errors="surrogatepass", newline="")
-        sources.cache.values.clear()  # a file that changes twice in a tick of the clock would be taken for the old one
+        cache.documents.values.clear()  # a file that changes twice in a clock tick seems unchanged
         _contents[path] = text
 
 

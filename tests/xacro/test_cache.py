@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from linkwright.xacro import expand, sources
+from linkwright.xacro import cache, expand
 from linkwright.xacro.cache import BoundedCache
 
 
@@ -37,4 +37,4 @@ def test_more_files_than_a_package_has_are_parsed_once(tmp_path) -> None:
     robots = [tmp_path / f"{number}.urdf" for number in range(600)]
     for robot in robots:
         expand(robot)
-    assert {str(robot) for robot in robots} <= {path for path, _ in sources.cache.values}
+    assert {str(robot) for robot in robots} <= {path for path, _ in cache.documents.values}

@@ -8,8 +8,8 @@ import pytest
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.xacro import Expansion, expand
-from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.parts import expand_parts
+from linkwright.xacro.session import Inputs
 from linkwright.xmltree import write_element
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.xacro import arguments_of, expand, explain
-from linkwright.xacro.inputs import Inputs
+from linkwright.xacro.session import Inputs
 from linkwright.xacro.tracing.property_log import log_properties
 from tests.xacro.cases import Case, read_cases
 from tests.xacro.test_rules import CASES

@@ -14,7 +14,7 @@ from linkwright.process.assignments import parse_assignments
 if TYPE_CHECKING:
     import argparse
 
-    from linkwright.xacro.inputs import Inputs
+    from linkwright.xacro.session import Inputs
 
 
 _QUIET, _PROPERTIES, _ALL_PROPERTIES = 0, 3, 4
@@ -99,8 +99,8 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
 
     Findings are written to standard error, results to standard output or a file.
     """
-    from linkwright.xacro.inputs import Inputs
     from linkwright.xacro.limits import Limits
+    from linkwright.xacro.session import Inputs
 
     words = [arguments.file, *arguments.values]
     files = [word for word in words if ":=" not in word]

@@ -102,12 +102,12 @@ class Description:
         """Every XML file that was read, as written (not expanded), the main file first."""
         if self.expansion is None:
             return {Path(self.name): self.document}
-        from linkwright.xacro import sources
+        from linkwright.xacro.cache import read_document
 
         found: dict[Path, Document] = {}
         for path in self.expansion.dependencies:
             with suppress(LinkwrightError):  # Skip YAML files, which are among the files.
-                found[path] = sources.read(str(path), self.overlay)
+                found[path] = read_document(str(path), self.overlay)
         return found
 
     def provenance(self, element: Element) -> Provenance | None:
@@ -433,8 +433,8 @@ def examine(
             plain = _as_it_stands(name, document, (*unexpanded, *forbidden), overlay, is_reported=bool(unexpanded))
             if plain.robot is not None and not has_errors(plain.diagnostics) and not _has_open_names(plain.robot):
                 return plain
-        from linkwright.xacro.inputs import Inputs
         from linkwright.xacro.parts import expand_parts
+        from linkwright.xacro.session import Inputs
 
         expansion = expand_parts(Inputs(name, arguments or {}, packages, text, overlay=overlay), error)
     return Description.of_expansion(name, expansion, overlay)

@@ -10,8 +10,8 @@ import math
 from collections.abc import Iterator
 from xml.etree import ElementTree as ET
 
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.loading.lean_typing import Any, Generic, Protocol, TypeVar
 
 _Node = ET.Element

@@ -15,7 +15,7 @@ from math import isfinite
 
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
 from linkwright.diagnostics.diagnostic import is_pointer
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import Any
 from linkwright.xmltree import Element, parse
 

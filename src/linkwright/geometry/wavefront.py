@@ -10,7 +10,7 @@ import numpy as np
 from linkwright.geometry.collada_scene import Unusual
 from linkwright.geometry.plain import PlainMesh, fans, parse_numbers
 from linkwright.geometry.polyhedron import Faces
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 
 _OF_TEXTURES = lazy_pattern(rb"/\S*")
 """The numbers after that of a vertex: those of its texture coordinates and its normal."""

@@ -12,7 +12,7 @@ from math import isclose
 from linkwright.diagnostics import SourceText, phrase
 from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.blocks import Attributes, inertial_block, inertial_parts, start_tag
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.urdf import Link
 from linkwright.xacro.faults import Frame, frames
 from linkwright.xmltree import Element, parse

@@ -31,7 +31,7 @@ from linkwright.lint.registry import find_rule
 from linkwright.lint.rule import Rule
 from linkwright.lint.selector_words import canonical, is_selector, selector_hint
 from linkwright.lint.settings import Settings
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import Any
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes

@@ -27,8 +27,8 @@ from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.settings import Settings
 from linkwright.lint.subject import Subject
 from linkwright.lint.suppression import Suppressions
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import MANIFEST

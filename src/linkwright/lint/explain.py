@@ -13,8 +13,8 @@ from linkwright.diagnostics import Phrase, joined, nearest, phrase, term, title_
 from linkwright.lint.option import OptionValue
 from linkwright.lint.registry import all_rules, find_rule
 from linkwright.lint.rule import Rule
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
-from linkwright.loading.lean_patterns import lazy_pattern
 
 PAGES = Path(__file__).parent / "pages"
 _SECTION = lazy_pattern(r"^## ([A-Z]+[0-9]{3}): (.+?)\n(.*?)(?=^## [A-Z]+[0-9]{3}: |\Z)", re.MULTILINE | re.DOTALL)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import element_range
 

@@ -13,8 +13,8 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lint.finding import without_element
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import NamedTuple
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING, TypeAlias
 from linkwright.packages import enclosing_package
 

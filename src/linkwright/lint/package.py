@@ -149,7 +149,7 @@ class PackageContext:
     @cached_property
     def descriptions(self) -> Mapping[Path, Document]:
         """The package's unexpanded URDF and xacro files, by path, without files that are not XML."""
-        from linkwright.xacro import sources
+        from linkwright.xacro.cache import read_document
 
         found: dict[Path, Document] = {}
         for file in self.files:
@@ -158,7 +158,7 @@ class PackageContext:
                 if not path.is_file():  # reading a named pipe would never end
                     continue
                 try:
-                    found[path] = sources.read(str(path))
+                    found[path] = read_document(str(path))
                 except LinkwrightError:
                     continue
         return found

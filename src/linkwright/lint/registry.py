@@ -13,8 +13,8 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Severity, Span, foreign, phrase
 from linkwright.lint.rule import Rule, Scope
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.extensions import EntryPoint, extensions
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:

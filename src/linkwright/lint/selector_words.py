@@ -5,7 +5,7 @@ from __future__ import annotations
 from linkwright.diagnostics import Phrase, nearest, phrase, quoted_names
 from linkwright.lint.registry import all_rules, find_rule
 from linkwright.lint.selectors import ALL
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 
 _CODE = lazy_pattern("[A-Z]+[0-9]{0,3}")
 

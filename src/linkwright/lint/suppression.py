@@ -19,8 +19,8 @@ from linkwright.lint.selector_words import canonical, is_selector, selector_hint
 from linkwright.lint.selectors import matches
 from linkwright.lint.settings import Settings
 from linkwright.lint.subject import Subject
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass, field
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.xmltree import Element
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.patches import element_range, whole_lines

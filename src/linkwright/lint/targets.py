@@ -7,11 +7,11 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.packages import enclosing_package
 from linkwright.packages.manifest import IGNORE_MARKERS, MANIFEST, SKIPPED_FOLDERS
-from linkwright.xacro import sources
+from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element
 from linkwright.xmltree.tinyxml import COMMENT
 
@@ -135,7 +135,7 @@ def _is_part(path: Path) -> bool:
     separately, a single URDF element, and files that are still to be written.
     """
     try:
-        root = sources.read(str(path)).root
+        root = read_document(str(path)).root
     except LinkwrightError as error:
         return _is_empty(path, error)
     if path.suffix != _URDF:
@@ -177,7 +177,7 @@ def _describes_robot(path: Path) -> bool:
     if path.name.endswith(_OTHER_FORMATS):
         return False
     try:
-        root = sources.read(str(path)).root
+        root = read_document(str(path)).root
     except LinkwrightError as error:
         return not _is_empty(path, error)  # the check reports any other error
     return root.tag == "robot" and "name" in root.attributes and _has_content(root)

@@ -403,7 +403,7 @@ def _matches(pattern: str, name: str) -> bool:
 
 
 def _descriptions_beside(path: Path) -> dict[Path, Document]:
-    from linkwright.xacro import sources
+    from linkwright.xacro.cache import read_document
 
     found: dict[Path, Document] = {}
     try:
@@ -413,7 +413,7 @@ def _descriptions_beside(path: Path) -> dict[Path, Document]:
     for candidate in candidates:
         if candidate.suffix in (".xacro", ".urdf") and candidate.is_file():  # reading a named pipe would never end
             try:
-                found[candidate] = sources.read(str(candidate))
+                found[candidate] = read_document(str(candidate))
             except LinkwrightError:
                 continue
     return found

@@ -11,8 +11,8 @@ import warnings
 from collections.abc import Iterator
 from functools import lru_cache
 
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass, field
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.xacro.expressions.template import Token, TokenKind, tokenize
 from linkwright.xacro.faults import Fault
 

@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Iterator
 from pathlib import Path
 
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 
 MANIFEST = "package.xml"
 

@@ -10,7 +10,7 @@ import keyword
 import re
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase, quoted, term
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 
 _IDENTIFIER = lazy_pattern(r"[A-Za-z][A-Za-z0-9_]*")
 # A name that catkin_pkg accepts, including names of old packages.

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 
 _DRIVE = lazy_pattern(r"/?([A-Za-z]:[\\/])")
 _SCHEME = lazy_pattern(r"([A-Za-z][A-Za-z0-9+.-]+):")

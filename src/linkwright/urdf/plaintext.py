@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.xmltree import Document, Element, parse
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.positions import attribute_value_range

@@ -21,8 +21,8 @@ from collections.abc import Iterable
 from itertools import takewhile
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, did_you_mean, joined, phrase
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass, replace
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.loading.lean_typing import Any, TypeVar
 from linkwright.schema.reading import UNREADABLE, reader_of
 from linkwright.schema.rules import ElementRule, Version

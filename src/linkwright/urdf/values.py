@@ -14,7 +14,7 @@ from math import isfinite, isinf, radians
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.single import Quaternion, Vector3
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import get_args
 from linkwright.schema import ValueType, Version
 from linkwright.urdf.model import JointType

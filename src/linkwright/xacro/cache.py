@@ -1,10 +1,12 @@
-"""Caches with limited size, for computed values and for compiled texts."""
+"""Caches with limited size, for computed values, compiled texts and parsed files."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 
 from linkwright.loading.lean_typing import Generic, TypeVar
+from linkwright.xmltree import Document, Overlay, parse_file
 
 _Key = TypeVar("_Key")
 _Value = TypeVar("_Value")
@@ -80,3 +82,43 @@ class TextCompiler(Generic[_Form]):
         form = self._compile(text)
         self._cache.store(text, form)
         return form
+
+
+_LINKS = f"{os.sep}shares{os.sep}"
+_MOST_BYTES = 24_000_000
+"""The maximum total size of the files whose documents are cached. A thousand robots have as much, and a document takes
+fifteen times as much memory as its file."""
+documents: BoundedCache[tuple[str, str], tuple[int, int, Document]] = BoundedCache(_MOST_BYTES, lambda _, file: file[1])
+"""Path and current folder -> modification time, size and document."""
+
+
+def read_document(path: str, overlay: Overlay | None = None) -> Document:
+    """Return the document of a file, which is shared and must not be changed.
+
+    A file is parsed once in a process until it changes.
+
+    Args:
+        path: the file.
+        overlay: the texts that replace those of files.
+
+    Raises:
+        LinkwrightError: see `linkwright.xmltree.parse_file`.
+    """
+    if _LINKS in path:  # a link folder of an unbuilt package
+        from linkwright.packages.share_layout import source_of  # few robots need the packages room for this
+
+        path = source_of(path)
+    unsaved = None if overlay is None else overlay.document(path)
+    if unsaved is not None:
+        return unsaved
+    key = (path, "" if os.path.isabs(path) else os.getcwd())  # noqa: PTH109, PTH117 - strings are faster and shown
+    try:
+        status = os.stat(path)  # noqa: PTH116
+    except (OSError, ValueError):
+        return parse_file(path)  # raises the error with the reason
+    known = documents.values.get(key)
+    if known is not None and known[:2] == (status.st_mtime_ns, status.st_size):
+        return known[2]
+    document = parse_file(path)
+    documents.store(key, (status.st_mtime_ns, status.st_size, document))
+    return document

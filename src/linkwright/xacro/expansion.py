@@ -9,9 +9,8 @@ from linkwright.diagnostics.diagnostic import TEXT_NAME, is_text
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.xacro.expander import Expander
 from linkwright.xacro.faults import Origin, origin_of
-from linkwright.xacro.inputs import Inputs, main_document
 from linkwright.xacro.limits import Limits, recursion_limit_for
-from linkwright.xacro.session import PackageSource
+from linkwright.xacro.session import Inputs, PackageSource, main_document
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xmltree import Comment, Document, Element, Overlay, write

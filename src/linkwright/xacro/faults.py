@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator
 from itertools import groupby
 
-from linkwright.diagnostics import Note, Phrase, SourceText, Span, phrase, term
+from linkwright.diagnostics import Diagnostic, Note, Phrase, SourceText, Span, phrase, term
 from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.xmltree import Element, Text
 
@@ -262,3 +262,10 @@ def text_part(text: Text, start: int | None, end: int | None) -> Span | None:
     if content.startswith(text.data, text.offset):
         return source.span(text.offset + start, text.offset + end)
     return source.span(raw_offset(content, text.offset, limit, start), raw_offset(content, text.offset, limit, end))
+
+
+def xml_hint(diagnostic: Diagnostic) -> Phrase | None:
+    """Return the hint of an XML mistake; for the xacro prefix, how to declare it."""
+    if diagnostic.code == "XML205" and diagnostic.message.startswith("the prefix 'xacro'"):
+        return phrase('declare it on the root element: xmlns:xacro="http://www.ros.org/wiki/xacro"')
+    return diagnostic.hint

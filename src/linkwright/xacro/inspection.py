@@ -10,9 +10,8 @@ from collections.abc import Mapping
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.xacro.expansion import expand
-from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.limits import Limits
-from linkwright.xacro.session import PackageSource
+from linkwright.xacro.session import Inputs, PackageSource
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -15,16 +15,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.xacro.expander import Directive, Expander, Site, is_final
 from linkwright.xacro.expansion import Expansion
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.inputs import Inputs, main_document
 from linkwright.xacro.limits import recursion_limit_for
 from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.plan import PREFIX, plan_of
-from linkwright.xacro.session import Session
+from linkwright.xacro.session import Inputs, Session, main_document
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xmltree import Document, Element, Text

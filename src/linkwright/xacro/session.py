@@ -1,4 +1,4 @@
-"""Sessions: the state of one expansion, with its arguments, packages, files, warnings and limits."""
+"""Sessions: the inputs and the state of one expansion, with its packages, files, warnings and limits."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ from linkwright.diagnostics import (
     foreign,
     phrase,
 )
+from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.loading.lean_typing import TYPE_CHECKING, Any, Protocol
-from linkwright.xacro import sources
+from linkwright.xacro.cache import read_document
 from linkwright.xacro.expressions import sandbox, symbols
 from linkwright.xacro.expressions.bounded import RefusalError, checked_keys
 from linkwright.xacro.expressions.expression import compile_expression
@@ -25,10 +26,10 @@ from linkwright.xacro.expressions.sandbox import Module
 from linkwright.xacro.expressions.scope import Namespace, Scope
 from linkwright.xacro.expressions.template import compile_template, package_fault, templates
 from linkwright.xacro.expressions.yamldata import YamlDict, YamlError
-from linkwright.xacro.faults import Fault, Frame, attribute_part, text_part, trail
+from linkwright.xacro.faults import Fault, Frame, attribute_part, text_part, trail, xml_hint
 from linkwright.xacro.limits import Budget, Limits
 from linkwright.xacro.plan import plan_document
-from linkwright.xmltree import Document, Element, Overlay, Text
+from linkwright.xmltree import Document, Element, Overlay, Text, parse
 from linkwright.xmltree.decoding import UTF_8
 
 if TYPE_CHECKING:
@@ -237,8 +238,8 @@ class Session:
         return os.path.join(self.root_dir, path)  # noqa: PTH118 - kept as it is written
 
     def read(self, path: str) -> Document:
-        """Return the document of a file; see `sources.read`."""
-        document = sources.read(self.on_disk(path), self._overlay)
+        """Return the document of a file; see `read_document`."""
+        document = read_document(self.on_disk(path), self._overlay)
         plan_document(document)
         if document.encoding != UTF_8 and document.source is not None:
             self._warn_of_encoding(document.source, document.encoding)
@@ -422,3 +423,39 @@ def _nearest_file(path: str) -> Phrase | None:
         return did_you_mean(name, os.listdir(folder or "."))  # noqa: PTH208 - names are needed, not paths
     except (OSError, ValueError):
         return None
+
+
+class Inputs(NamedTuple):
+    """The inputs of an expansion; see `linkwright.xacro.expand`."""
+
+    name: str
+    arguments: Mapping[str, str]
+    packages: PackageSource = None
+    text: str | None = None
+    limits: Limits = Limits()
+    root_dir: str = ""
+    overlay: Overlay | None = None
+
+    def session(self) -> Session:
+        """Return a session in its initial state."""
+        return Session(self.name, self.arguments, self.packages, self.limits, self.root_dir, self.overlay)
+
+
+def main_document(session: Session, text: str | None = None) -> Document:
+    """Return the document of a session's file, or of a text that replaces it.
+
+    Raises:
+        LinkwrightError: if it cannot be read, or is not XML.
+    """
+    try:
+        document = session.read(session.file) if text is None else parse(text, session.file)
+    except LinkwrightError as error:
+        first = error.diagnostics[0]
+        hint = xml_hint(first)
+        if hint == first.hint:
+            raise
+        raise LinkwrightError(
+            Diagnostic(first.code, first.message, first.span, notes=first.notes, hint=hint, source=first.source)
+        ) from None
+    plan_document(document)
+    return document

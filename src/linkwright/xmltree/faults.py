@@ -7,7 +7,7 @@ from xml.parsers.expat import ExpatError
 from xml.parsers.expat import errors as expat_errors
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, SourceText, foreign, phrase
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 
 _CODE = expat_errors.codes
 _NO_ELEMENT = _CODE[expat_errors.XML_ERROR_NO_ELEMENTS]

@@ -12,8 +12,8 @@ import difflib
 from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import NamedTuple, dataclass, field
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.xmltree.nodes import Document, Element, Node, Text
 from linkwright.xmltree.reader import parse
 from linkwright.xmltree.style import Style

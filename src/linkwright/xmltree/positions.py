@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 
 _TAG_NAME = lazy_pattern(r"<[^\s/>]+")
 _ATTRIBUTE = lazy_pattern(r"""\s*([^\s=/>"']+)\s*=\s*("[^"]*"|'[^']*')""")

@@ -19,8 +19,8 @@ from xml.parsers.expat import ExpatError, ParserCreate
 from xml.parsers.expat.errors import XML_ERROR_TAG_MISMATCH, codes
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Severity, SourceText, Span, phrase
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import NamedTuple
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, Text
 from linkwright.xmltree.reader import parse
 

@@ -11,8 +11,8 @@ import re
 from collections.abc import Iterator
 from enum import Enum
 
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import NamedTuple
-from linkwright.loading.lean_patterns import lazy_pattern
 
 _MARKUP = lazy_pattern(
     r"""

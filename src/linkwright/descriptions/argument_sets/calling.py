@@ -10,8 +10,8 @@ from pathlib import Path
 
 from linkwright.descriptions.argument_sets.workspace import CallingFiles
 from linkwright.diagnostics import Span
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass, replace
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.readers.xacro_calls.call import (
     CallingFile,

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from linkwright.descriptions.argument_sets.calling import ArgumentSet
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.xmltree import Document, Element
 
 _ARGUMENT = r"\$\(arg\s+([\w.-]+)\s*\)"

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 
 from linkwright.descriptions.editing.numbers import in_degrees, part_of_pi, shortest
 from linkwright.diagnostics import SourceText, Span
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
-from linkwright.loading.lean_patterns import lazy_pattern
 
 _WORD = lazy_pattern(r"(?:\$\{[^}]*\}|\$\([^)]*\)|\S)+")
 _ONE_EXPRESSION = lazy_pattern(r"\$\{([^{}]*)\}\Z|(\$\([^()]*\))\Z")

@@ -56,7 +56,7 @@ class Snapshot:
     @cached_property
     def definitions(self) -> Definitions:
         """The sources of named values."""
-        from linkwright.xacro import sources
+        from linkwright.xacro.cache import read_document
 
         if self.description.expansion is None:
             return Definitions((), (), Overlay())
@@ -68,7 +68,7 @@ class Snapshot:
                 others.append(path)
             else:
                 with suppress(LinkwrightError):  # The file may be optional and not exist.
-                    documents.append(sources.read(str(path), overlay))
+                    documents.append(read_document(str(path), overlay))
         return Definitions(documents, others, overlay)
 
     def with_text(self, place: Place, text: str) -> Snapshot:

@@ -11,7 +11,7 @@ from linkwright.lint.fix import Fix, remove_element, value_edit
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import BOUNDED, UNBOUNDED, bounds, format_number, limits
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 
 _SENSOR = lazy_pattern(
     r"sensor|camera|(?<![a-z])(imu|gps|gnss|dvl|sonar|lidar|laser|magnetometer|altimeter|pressure|bumper)(?![a-z])",

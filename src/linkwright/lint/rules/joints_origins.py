@@ -11,7 +11,7 @@ from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import SURROUNDINGS, format_number, joints, parts, values
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.urdf.values import looks_like_degrees
 from linkwright.xmltree import Element
 

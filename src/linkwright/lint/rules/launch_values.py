@@ -25,8 +25,8 @@ from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.launch_files import LaunchRule
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.subject import Subject
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import NamedTuple
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 

@@ -11,7 +11,7 @@ from linkwright.lint.meshes import material_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.geometry import shapes_of
 from linkwright.lint.subject import Subject
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.urdf import Link, Material, Mesh, Visual
 from linkwright.urdf.reader import read_material
 from linkwright.urdf.report import UrdfReport

@@ -11,7 +11,7 @@ from linkwright.diagnostics import Diagnostic, Phrase, Severity, did_you_mean, d
 from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.packages import enclosing_package
 from linkwright.xmltree import Element
 from linkwright.xmltree.positions import attribute_value_range

@@ -11,7 +11,7 @@ from linkwright.geometry.shapes import Matrix, angle_between, rotation
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.meshes_addresses import written
 from linkwright.lint.subject import Subject
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.urdf import Box, Geometry, Joint, Mesh, parent_joints
 
 _OPTICAL = lazy_pattern(r"(?P<stem>.*?)_?optical(_(frame|link|joint))?$")

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase, term
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.xmltree import Element
 
 _USUAL = lazy_pattern(r"[A-Za-z0-9_./\- ]*")

@@ -16,8 +16,8 @@ from linkwright.geometry.shapes import Placement, placement, rotated
 from linkwright.geometry.single import dot, length, subtracted
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import NamedTuple
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.urdf import Collision, Cylinder, Joint, Link, Robot, Vector3, Visual
 
 _NO_WHEEL = lazy_pattern(

@@ -8,7 +8,7 @@ from keyword import iskeyword
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
 from linkwright.lint.rules.package_manifest import ManifestRule, PackageRule
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages.naming import check_package_name, departure_from_rep, is_accepted_name, is_email
 

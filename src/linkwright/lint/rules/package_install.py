@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, nearest, phrase, quoted
 from linkwright.lint.made_files import is_ignored_by_git, is_made_by_cmake, submodule_of
 from linkwright.lint.rules.package_manifest import PackageRule
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
 from linkwright.lint.rules.package_install import checkout_hint, near_file
 from linkwright.lint.rules.package_manifest import PackageRule
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:

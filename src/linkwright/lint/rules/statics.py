@@ -17,8 +17,8 @@ from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.names_wheels import joints_above, wheels
 from linkwright.lint.subject import Subject
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import NamedTuple
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.urdf import Cylinder, Link, Robot, Sphere, Vector3
 
 _CASTER = lazy_pattern(r"cast(?:e|o)r|ball_?wheel", re.IGNORECASE)

@@ -10,7 +10,7 @@ from linkwright.lint.extension_names import INTERFACES, OF_JOINTS, OF_LINKS
 from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import element_range
 

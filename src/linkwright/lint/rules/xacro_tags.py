@@ -12,7 +12,7 @@ from linkwright.lint.fix import Fix, add_attribute, rename_element, replace_valu
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.xacro_rule import XacroRule
 from linkwright.lint.subject import Subject
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.schema import ElementRule
 from linkwright.urdf.schema import ROBOT

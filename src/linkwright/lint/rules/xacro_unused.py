@@ -17,7 +17,7 @@ from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
 from linkwright.diagnostics.misspellings import misspelling_of
 from linkwright.lint.fix import remove_element
 from linkwright.lint.rules.xacro_rule import XacroRule
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.xmltree import Element
 

@@ -10,7 +10,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 
 _VERSION = lazy_pattern(r"python(\d+)\.(\d+)")
 _ASK_SECONDS = 5.0

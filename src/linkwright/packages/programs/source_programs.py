@@ -15,8 +15,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass, field
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.loading.lean_typing import Any
 from linkwright.packages.readers.entry_points import (
     LINE,

@@ -6,7 +6,7 @@ be read here, so their installed files are not known.
 
 from __future__ import annotations
 
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 
 _OF_CMAKE = frozenset(
     {

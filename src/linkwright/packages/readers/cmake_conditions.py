@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, MutableMapping, Sequence
 
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.packages.readers.cmake_syntax import is_open
 
 _NUMBER = lazy_pattern(r"[+-]?\d+(\.\d*)?")

@@ -18,8 +18,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass, field
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.packages.ament import ROS_VARIABLES
 from linkwright.packages.readers.cmake_conditions import YES, Condition, Word
 from linkwright.packages.readers.cmake_syntax import ENDS, Statement, Token, branches, end_of_block, is_open, statements

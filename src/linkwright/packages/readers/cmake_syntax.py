@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import SourceText
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
-from linkwright.loading.lean_patterns import lazy_pattern
 
 _PIECE = lazy_pattern(
     r"""

@@ -7,8 +7,8 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import NamedTuple
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.loading.lean_typing import Any
 
 PROGRAMS = "console_scripts"

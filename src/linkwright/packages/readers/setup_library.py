@@ -14,7 +14,7 @@ from glob import glob
 from itertools import chain
 from pathlib import Path, PurePosixPath
 
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import Any
 
 _MOST_ITEMS = 20_000

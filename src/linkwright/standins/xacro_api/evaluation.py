@@ -15,8 +15,7 @@ from linkwright.xacro.expressions.scope import Namespace, Scope, truth
 from linkwright.xacro.expressions.symbols import tokenize
 from linkwright.xacro.expressions.template import substitute
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.inputs import Inputs
-from linkwright.xacro.session import Session
+from linkwright.xacro.session import Inputs, Session
 
 _Result = TypeVar("_Result")
 

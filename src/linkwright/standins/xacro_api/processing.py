@@ -18,8 +18,8 @@ from linkwright.standins.xacro_api.command_line import process_args
 from linkwright.standins.xacro_api.errors import XacroException, translate_error
 from linkwright.standins.xacro_api.stacks import STATE, StackExpander, StackSession, init_stacks
 from linkwright.xacro.expansion import Expansion, banner
-from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.limits import recursion_limit_for
+from linkwright.xacro.session import Inputs
 from linkwright.xmltree import Document
 from linkwright.xmltree import parse as parse_text
 

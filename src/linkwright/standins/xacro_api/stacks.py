@@ -12,10 +12,9 @@ from typing import Any
 from linkwright.standins.xacro_api.macros import Macro
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.macros import Macro as EngineMacro
 from linkwright.xacro.macros import MacroTable
-from linkwright.xacro.session import Session
+from linkwright.xacro.session import Inputs, Session
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xmltree import Document, Element

@@ -8,7 +8,7 @@ from typing import Any
 from linkwright.standins.xacro_api.errors import XacroException
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.inputs import Inputs
+from linkwright.xacro.session import Inputs
 
 
 class SubstitutionException(XacroException):

@@ -11,7 +11,7 @@ from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Container, Directive, Expander, Site, check_attributes, warn_of_global
 from linkwright.xacro.expressions.expression import is_identifier
 from linkwright.xacro.expressions.scope import Namespace, Scope, truth
-from linkwright.xacro.faults import Frame, trail
+from linkwright.xacro.faults import Frame, trail, xml_hint
 from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.tags.macro_calls import call_dynamically, define_macro
 from linkwright.xmltree import Document, Element
@@ -129,13 +129,6 @@ def _document(expander: Expander, site: Site, path: str) -> Document:
                 first.code, first.message, first.span, notes=notes, hint=xml_hint(first), source=first.source
             )
         raise LinkwrightError(diagnostic) from None
-
-
-def xml_hint(diagnostic: Diagnostic) -> Phrase | None:
-    """Return the hint of an XML mistake; for the xacro prefix, how to declare it."""
-    if diagnostic.code == "XML205" and diagnostic.message.startswith("the prefix 'xacro'"):
-        return phrase('declare it on the root element: xmlns:xacro="http://www.ros.org/wiki/xacro"')
-    return diagnostic.hint
 
 
 def _nearest_file(path: str) -> Phrase | None:

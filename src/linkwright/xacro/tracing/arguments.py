@@ -13,12 +13,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, Span, did_you_mean, phrase
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault, attribute_part, text_part
-from linkwright.xacro.inputs import Inputs, main_document
+from linkwright.xacro.session import Inputs, main_document
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tracing.traced import TracedSession, expand_traced
 from linkwright.xmltree import Document, Element, Text

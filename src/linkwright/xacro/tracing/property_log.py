@@ -8,8 +8,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Expander, Site
 from linkwright.xacro.expressions.scope import Lazy, Scope
-from linkwright.xacro.inputs import Inputs
-from linkwright.xacro.session import Session
+from linkwright.xacro.session import Inputs, Session
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tracing.references import shown
 from linkwright.xacro.tracing.traced import PROBE, TracedSession, expand_traced, recorded_probe

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, phrase
 from linkwright.xacro.faults import Frame, frames
-from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.limits import recursion_limit_for
+from linkwright.xacro.session import Inputs
 from linkwright.xacro.tracing.recorder import Moment, Recorder
 from linkwright.xacro.tracing.references import Value, written_attribute
 from linkwright.xacro.tracing.traced import TracedSession, expand_traced

@@ -11,9 +11,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from linkwright.xacro.expander import Directive, Expander
-from linkwright.xacro.inputs import Inputs, main_document
 from linkwright.xacro.limits import recursion_limit_for
-from linkwright.xacro.session import Session
+from linkwright.xacro.session import Inputs, Session, main_document
 from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xmltree import Document, Element, Node, Text
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.packages.readers.xacro_calls.texts import Open, Share, Text, joined, literal
 
 _PROGRAM = lazy_pattern(r"(^|/)xacro(\.py)?$")

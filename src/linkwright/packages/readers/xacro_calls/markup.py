@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 
 from linkwright.diagnostics import LinkwrightError, SourceText, Span
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import Any
 from linkwright.packages.readers.xacro_calls.call import CallingFile, Inclusion, XacroCall, launch_argument
 from linkwright.packages.readers.xacro_calls.command_line import xacro_command

@@ -5,8 +5,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Mapping, Sequence
 
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass, field
-from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.loading.lean_typing import Union
 from linkwright.packages.readers.python_values import argument_of, called_name
 from linkwright.packages.readers.xacro_calls.call import CallingFile, launch_argument

@@ -1,4 +1,4 @@
-"""Patterns of `linkwright.loading.lean_patterns`, beside those that are compiled at once."""
+"""Patterns of `linkwright.loading.deferred`, beside those that are compiled at once."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import re
 
 import pytest
 
-from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.deferred import lazy_pattern
 from tests.imports import loaded_by
 
 
