@@ -11,7 +11,7 @@ from linkwright.language.completion import complete
 from linkwright.language.definitions import definitions_in
 from linkwright.language.hover import definitions_at, explain_at
 from linkwright.lsp.positions import TextPositions
-from linkwright.lsp.texts import folds, format_edits, linked_tags, selections, symbols
+from linkwright.lsp.requests.texts import folds, format_edits, linked_tags, selections, symbols
 from linkwright.packages import PackageFinder
 
 ROBOT = (Path(__file__).parents[2] / "robots/my_robot_description/urdf/mbot_gazebo.xacro").read_text(encoding="utf-8")

@@ -24,7 +24,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Serve an editor until it ends the connection."""
     try:
-        from linkwright.lsp.server import make_server
+        from linkwright.lsp.features import make_server
     except ModuleNotFoundError as error:
         raise missing_extra("CLI307", error) from None
     logging.basicConfig(stream=sys.stderr, level=logging.WARNING, format="linkwright lsp: %(message)s")

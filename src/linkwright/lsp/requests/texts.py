@@ -11,6 +11,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.language.outline import Outline, OutlineElement
 from linkwright.lint.configuration import settings_for
 from linkwright.lsp.positions import TextPositions
+from linkwright.lsp.server import LinkwrightServer
 from linkwright.xmltree.formatting import changes, format_text
 
 _KINDS = {
@@ -129,3 +130,46 @@ def linked_tags(positions: TextPositions, place: types.Position) -> types.Linked
         if any(start <= offset <= start + length for start in starts):
             return types.LinkedEditingRanges([positions.range(start, start + length) for start in starts])
     return None
+
+
+def add_requests(server: LinkwrightServer) -> None:
+    """Add the requests of this module to a server."""
+
+    @server.feature(types.TEXT_DOCUMENT_FORMATTING)
+    def format_document(server: LinkwrightServer, asked: types.DocumentFormattingParams) -> list[types.TextEdit] | None:
+        path, positions = server.text(asked.text_document)
+        return None if positions is None else format_edits(positions, path)
+
+    @server.feature(types.TEXT_DOCUMENT_RANGE_FORMATTING)
+    def format_range(
+        server: LinkwrightServer, asked: types.DocumentRangeFormattingParams
+    ) -> list[types.TextEdit] | None:
+        path, positions = server.text(asked.text_document)
+        lines = (asked.range.start.line, asked.range.end.line + (asked.range.end.character > 0))
+        return None if positions is None else format_edits(positions, path, lines)
+
+    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
+    def document_symbol(
+        server: LinkwrightServer, asked: types.DocumentSymbolParams
+    ) -> list[types.DocumentSymbol] | None:
+        _, positions = server.text(asked.text_document)
+        return None if positions is None else symbols(positions)
+
+    @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
+    def folding_range(server: LinkwrightServer, asked: types.FoldingRangeParams) -> list[types.FoldingRange] | None:
+        _, positions = server.text(asked.text_document)
+        return None if positions is None else folds(positions)
+
+    @server.feature(types.TEXT_DOCUMENT_SELECTION_RANGE)
+    def selection_range(
+        server: LinkwrightServer, asked: types.SelectionRangeParams
+    ) -> list[types.SelectionRange] | None:
+        _, positions = server.text(asked.text_document)
+        return None if positions is None else selections(positions, asked.positions)
+
+    @server.feature(types.TEXT_DOCUMENT_LINKED_EDITING_RANGE)
+    def linked_editing_range(
+        server: LinkwrightServer, asked: types.LinkedEditingRangeParams
+    ) -> types.LinkedEditingRanges | None:
+        _, positions = server.text(asked.text_document)
+        return None if positions is None else linked_tags(positions, asked.position)

@@ -9,9 +9,11 @@ from lsprotocol import types
 
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
+from linkwright.language.includes import real
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Fix
 from linkwright.lsp.positions import TextOf
+from linkwright.lsp.server import LinkwrightServer
 
 
 def actions(
@@ -76,3 +78,16 @@ def _edit(fixes: Iterable[Fix], positions: TextOf, uri: Callable[[Path], str]) -
 
 def _fits(edit: tuple[int, int, types.TextEdit], others: Iterable[tuple[int, int, types.TextEdit]]) -> bool:
     return all(edit[1] <= start or end <= edit[0] for start, end, _ in others)
+
+
+def add_requests(server: LinkwrightServer) -> None:
+    """Add the requests of this module to a server."""
+    kinds = types.CodeActionOptions([types.CodeActionKind.QuickFix, types.CodeActionKind.SourceFixAll])
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, kinds)
+    def code_action(server: LinkwrightServer, asked: types.CodeActionParams) -> list[types.CodeAction] | None:
+        path, positions = server.text(asked.text_document)
+        if positions is None or server.project is None:
+            return None
+        found = server.project.fixable(real(path), server.texts())
+        return actions(found, asked.range, server.positions, server.uri_of, asked.context.diagnostics)

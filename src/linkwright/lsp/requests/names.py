@@ -14,6 +14,7 @@ from linkwright.language.definitions import NameDefinition
 from linkwright.language.hover import definitions_at, explain_at
 from linkwright.language.workspace import Workspace
 from linkwright.lsp.positions import TextOf, TextPositions
+from linkwright.lsp.server import LinkwrightServer
 
 _KINDS = {
     ItemKind.ELEMENT: types.CompletionItemKind.Class,
@@ -98,3 +99,34 @@ def _locations(
 
 def _markdown(text: str) -> types.MarkupContent:
     return types.MarkupContent(types.MarkupKind.Markdown, localized(text))
+
+
+def add_requests(server: LinkwrightServer) -> None:
+    """Add the requests of this module to a server."""
+
+    @server.feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(["<", " ", '"', "/", "{", "(", ":"]))
+    async def completion_request(
+        server: LinkwrightServer, asked: types.CompletionParams
+    ) -> list[types.CompletionItem] | None:
+        path, positions = server.text(asked.text_document)
+        if positions is None or server.project is None:
+            return None
+        capabilities = server.client_capabilities.text_document
+        item = capabilities.completion.completion_item if capabilities and capabilities.completion else None
+        takes_snippets = bool(item and item.snippet_support)
+        known = await server.names(path)
+        return completions(server.project, path, known, positions, asked.position, takes_snippets=takes_snippets)
+
+    @server.feature(types.TEXT_DOCUMENT_HOVER)
+    async def hover_request(server: LinkwrightServer, asked: types.HoverParams) -> types.Hover | None:
+        path, positions = server.text(asked.text_document)
+        return None if positions is None else hover(path, await server.names(path), positions, asked.position)
+
+    @server.feature(types.TEXT_DOCUMENT_DEFINITION)
+    async def definition_request(
+        server: LinkwrightServer, asked: types.DefinitionParams
+    ) -> list[types.Location] | None:
+        path, positions = server.text(asked.text_document)
+        if positions is None:
+            return None
+        return definitions(await server.names(path), positions, asked.position, server.positions, server.uri_of)

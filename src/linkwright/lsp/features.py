@@ -1,0 +1,48 @@
+"""The language server with all of its features."""
+
+from __future__ import annotations
+
+from lsprotocol import types
+
+from linkwright.lsp.requests import fixes, names, texts
+from linkwright.lsp.server import LinkwrightServer, path_of
+
+
+def make_server() -> LinkwrightServer:
+    """Return a server with all features."""
+    server = LinkwrightServer()
+
+    @server.feature(types.INITIALIZED)
+    async def initialized(server: LinkwrightServer, _: types.InitializedParams) -> None:
+        folders = [path for uri in server.workspace.folders if (path := path_of(uri)) is not None]
+        root = path_of(server.workspace.root_uri) if server.workspace.root_uri else None
+        server.begin(folders or ([root] if root else []))
+
+    @server.feature(types.SHUTDOWN)
+    def shutdown(server: LinkwrightServer, _: None) -> None:
+        server.end()
+
+    @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
+    def did_open(server: LinkwrightServer, opened: types.DidOpenTextDocumentParams) -> None:
+        server.file_opened(opened.text_document.uri)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
+    def did_change(server: LinkwrightServer, changed: types.DidChangeTextDocumentParams) -> None:
+        server.file_changed(changed.text_document.uri)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
+    def did_close(server: LinkwrightServer, closed: types.DidCloseTextDocumentParams) -> None:
+        server.file_changed(closed.text_document.uri)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_SAVE)
+    def did_save(server: LinkwrightServer, saved: types.DidSaveTextDocumentParams) -> None:
+        server.file_saved(saved.text_document.uri)
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
+    def did_change_watched_files(server: LinkwrightServer, watched: types.DidChangeWatchedFilesParams) -> None:
+        for change in watched.changes:
+            server.file_saved(change.uri)
+
+    for requests in (texts, names, fixes):
+        requests.add_requests(server)
+    return server

@@ -1,0 +1,1 @@
+"""The requests of an editor, by subject: each module adds its requests to a server."""
